@@ -4,29 +4,19 @@ The computed curve is ``scale * (recorded + offset)`` of one item of a recorded 
 measured, and the same measure is taken of the reference: a number, or a curve in a file.
 """
 
-import math
-from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
-import numpy as np
 import pydantic
 
-from quintet.coupler.measures import time_series
-from quintet.coupler.measures.oscillation import fit
-from quintet.coupler.measures.time_series import Curve
-from quintet.interfaces.component import Field, Fields, Port, fields_of, lacked
-from quintet.interfaces.errors import SceneError
-from quintet.interfaces.params import NotNegative, Number, Positive, parameters, shown, unknown
-from quintet.interfaces.units import INTEGRATED, same
+from quintet.interfaces.params import NotNegative, Number, Positive, parameters
 
 if TYPE_CHECKING:  # checking a scene reads no recording: h5py is not loaded for it
-    from quintet.coupler.files.recording import Recording
+    pass
 
 Measure = Literal[
     "rms", "relative_rms", "crossing", "at", "max", "min", "mean", "integral", "period", "decay"
 ]  # fmt: skip
+ReferenceKind = Literal["", "exact", "experiment", "other code", "own finest run"]
 DISTANCES = ("rms", "relative_rms")  # to a curve
 Index = Annotated[int, pydantic.Field(ge=0)]
 MEASURED_IN = {"crossing": "s", "period": "s", "decay": "1/s", "relative_rms": "1"}
@@ -87,6 +77,10 @@ class Expectation:
         Of the measured value.
     source
         Where the reference is from.
+    reference_kind
+        What the reference is: a formula, a law of conservation, or equations solved to rounding
+        (exact), an experiment, another program or method (other code), or a finer or differently
+        arranged run of quintet itself (own finest run).
     quantity
         What the curve is, in words, for pictures; told by its field if not given.
     required
@@ -112,6 +106,7 @@ class Expectation:
     within: NotNegative
     unit: str
     source: str
+    reference_kind: ReferenceKind = ""
     quantity: str = ""
     required: bool = True
 
@@ -152,249 +147,3 @@ class Expectation:
             (self.field.count(".") != 1, f"field must be port.field; found {self.field!r}."),
             (self.scale == 0.0, "scale must not be 0, as every run would do; remove it."),
         ]
-
-
-@dataclass(frozen=True, slots=True)
-class Outcome:
-    """Comparison of a run with an expectation; ``value`` is None where the run has none.
-
-    Where it has none because it ended before, ``not_reached`` is the time that it lacks, s.
-    """
-
-    name: str
-    value: float | None
-    reference: float
-    within: float
-    unit: str
-    met: bool
-    source: str
-    required: bool = True
-    not_reached: float | None = None
-    reason: str = ""  # why a run that reached its times has no value
-
-
-def check(
-    expectation: Expectation, gives: Mapping[str, tuple[Port, ...]], folder: Path
-) -> list[str]:
-    """Check an expectation against the ports and reference data of a scene.
-
-    `gives` has the ports that each component gives, by its name; `folder` is the scene's, where
-    the reference curves are. Returns one sentence for each mistake; none when all is well.
-    """
-    where = f"expectation {expectation.name}"
-    mistakes = []
-    if expectation.component not in gives:
-        place = f"{where}: component {expectation.component}"
-        mistakes.append(unknown(place, expectation.component, gives))
-    else:
-        ports = gives[expectation.component]
-        fields = fields_of(ports)
-        mistakes += _check_field(expectation, fields, ports) or _check_unit(
-            expectation, fields[expectation.field]
-        )
-    if expectation.csv is not None:
-        try:
-            reference_value(expectation, folder)
-        except SceneError as error:
-            mistakes += error.mistakes
-    return mistakes
-
-
-def _check_field(
-    expectation: Expectation, fields: Mapping[str, Field], ports: tuple[Port, ...]
-) -> list[str]:
-    where = f"expectation {expectation.name}"
-    if expectation.field not in fields:
-        place = f"{where}: field {expectation.component}.{expectation.field}"
-        if remedy := lacked(ports, expectation.field):
-            return [f"{place} is not given with these settings. {remedy}"]
-        return [unknown(place, expectation.field, fields)]
-    shape, axis = fields[expectation.field].shape, expectation.axis
-    if axis is not None and (len(shape) != 1 or axis >= shape[0]):
-        allowed = f"0 to {shape[0] - 1}" if len(shape) == 1 else "left out"
-        return [f"{where}: axis of {expectation.field} must be {allowed}; found {axis}."]
-    return []
-
-
-def lacking_items(
-    expectations: Iterable[Expectation], outputs: Mapping[str, Fields]
-) -> Iterator[str]:
-    """Say which items are expected that a component does not have.
-
-    `outputs` has those of each component that are known, by its name.
-    """
-    for expectation in expectations:
-        array = outputs.get(expectation.component, {}).get(expectation.field)
-        if (
-            array is not None
-            and isinstance(expectation.item, int)
-            and expectation.item >= len(array)
-        ):
-            yield (
-                f"expectation {expectation.name}: item must be below {len(array)}, as many as "
-                f"{expectation.component} has of {expectation.field}; found {expectation.item}. "
-                "Correct it."
-            )
-
-
-def _check_unit(expectation: Expectation, field: Field) -> list[str]:
-    """Compare the unit with that of what is measured; a scale may make any of any."""
-    unit = MEASURED_IN.get(expectation.measure, field.unit if expectation.scale == 1.0 else "")
-    if expectation.measure == "integral" and unit:
-        unit = INTEGRATED.get(unit, f"{unit} s")
-    if not unit or same(unit, expectation.unit):
-        return []
-    remedy = f"Give value and within in {unit}"
-    if expectation.measure not in MEASURED_IN:
-        remedy += f", or the scale that makes {expectation.unit} of {unit}"
-    what = expectation.field if expectation.measure not in MEASURED_IN else expectation.measure
-    return [
-        f"expectation {expectation.name}: unit must be {unit}, that of {what}; found "
-        f"{shown(expectation.unit)}. {remedy}."
-    ]
-
-
-def curve(expectation: Expectation, recording: "Recording") -> Curve:
-    """Return the computed curve, offset and scaled; an impulse as its mean rate at mid-window."""
-    ports = recording.ports(expectation.component)
-    fields = fields_of(ports)
-    if mistakes := _check_field(expectation, fields, ports):
-        raise SceneError(mistakes)
-    name, key, item = expectation.component, expectation.field, expectation.item
-    times = recording.times(name)
-    if isinstance(item, int):
-        values = recording.history(name, key, item)[:, None]
-    else:
-        values = recording.field(name, key)
-    if fields[key].centring == "impulse":
-        spans = np.diff(times).reshape(-1, *[1] * (values.ndim - 1))
-        values = values[1:] / spans
-        times = (times[1:] + times[:-1]) / 2
-    if expectation.axis is not None:
-        values = values[..., expectation.axis]
-    elif values.ndim > 2:
-        values = np.linalg.norm(values.reshape(*values.shape[:2], -1), axis=2)
-    values = values[:, 0] if isinstance(item, int) else getattr(values, item)(axis=1)
-    whole = Curve(times, expectation.scale * (values + expectation.offset))
-    if expectation.moving_mean and len(times) > 1:
-        whole = time_series.moving_mean(whole, expectation.moving_mean)
-    return _since_level(whole, expectation.from_level)
-
-
-def _since_level(curve: Curve, level: float | None) -> Curve:
-    """Count the times of a curve from where it first passes a level; nan if it never does."""
-    if level is None:
-        return curve
-    return Curve(curve.times - time_series.crossing(curve, level), curve.values)
-
-
-def reference_curve(expectation: Expectation, folder: Path) -> Curve | None:
-    """Read the reference curve, if there is one."""
-    if expectation.csv is None:
-        return None
-    where = f"expectation {expectation.name}: reference {expectation.csv}"
-    whole = time_series.read(Path(folder) / expectation.csv, where, expectation.csv_second)
-    whole = _since_level(whole, expectation.from_level)
-    if math.isnan(whole.times[0]):
-        raise SceneError(f"{where} must pass from_level {expectation.from_level}; it does not.")
-    return whole
-
-
-def _measured(expectation: Expectation, curve: Curve, end: float) -> float:
-    """Evaluate a measure of one curve; distances need two."""
-    if expectation.measure == "at":
-        return float(np.interp(expectation.begin, curve.times, curve.values))
-    part = time_series.between(curve, expectation.begin, end)
-    match expectation.measure:
-        case "crossing":
-            assert expectation.level is not None
-            return time_series.crossing(part, expectation.level)
-        case "period":
-            return fit(part).period
-        case "decay":
-            return fit(part).decay
-        case "mean":
-            return time_series.mean(part)
-        case "integral":
-            return time_series.integral(part)
-        case "max":
-            return float(part.values.max())
-        case _:
-            return float(part.values.min())
-
-
-def reference_value(expectation: Expectation, folder: Path) -> float:
-    """Return the reference: a number, or the measure of its curve; 0 for a distance."""
-    reference = reference_curve(expectation, folder)
-    if reference is None:
-        return float(expectation.value or 0.0)
-    where = f"expectation {expectation.name}: reference {expectation.csv}"
-    end = math.inf if expectation.end is None else expectation.end
-    first, last = reference.times[[0, -1]]
-    if expectation.begin > last or end < first:
-        raise SceneError(
-            f"{where} must reach into {expectation.begin:g} to {end:g} s; it has {first:g} to "
-            f"{last:g} s. Correct begin or end."
-        )
-    if expectation.measure in DISTANCES:
-        return 0.0
-    value = _measured(expectation, reference, end)
-    if math.isnan(value):
-        rule = "oscillate" if expectation.level is None else f"pass the level {expectation.level}"
-        raise SceneError(f"{where} must {rule}; it does not.")
-    return value
-
-
-def evaluate(expectation: Expectation, recording: "Recording", folder: Path) -> Outcome:
-    """Compare a run with an expectation; a run that ended too early does not meet it."""
-    reference = reference_value(expectation, folder)
-    value, not_reached = _value(expectation, recording, folder)
-    return Outcome(
-        expectation.name,
-        value if math.isfinite(value) else None,
-        reference,
-        expectation.within,
-        expectation.unit,
-        abs(value - reference) <= expectation.within,  # not so of nan
-        expectation.source,
-        expectation.required,
-        not_reached,
-        "" if math.isfinite(value) or not_reached is not None else _why_none(expectation),
-    )
-
-
-def _why_none(expectation: Expectation) -> str:
-    """Why a run that reached all times of an expectation has no value of it."""
-    if expectation.from_level is not None:
-        return f"the curve never passes from_level {expectation.from_level:g}, or has no value then"
-    if expectation.level is not None:
-        return f"the curve never passes the level {expectation.level:g}"
-    return "the recorded curve has no finite value, or does not oscillate"
-
-
-def _value(
-    expectation: Expectation, recording: "Recording", folder: Path
-) -> tuple[float, float | None]:
-    """Measured value, nan if there is none, and the time [s] that the run did not reach."""
-    if len(recording.times(expectation.component)) < 2:  # no window was finished
-        return math.nan, None
-    computed = curve(expectation, recording)
-    run_end = last = float(recording.times(expectation.component)[-1])  # s
-    if expectation.from_level is not None:
-        last = float(computed.times[-1])
-        if math.isnan(last):
-            return math.nan, None
-    wanted, target = expectation.end, reference_curve(expectation, folder)
-    if expectation.measure == "at":
-        wanted = expectation.begin
-    elif wanted is None and target is not None and expectation.measure != "crossing":
-        wanted = float(target.times[-1])
-    end = last if wanted is None else wanted
-    if (needed := max(end, expectation.begin)) > last * (1.0 + ROUNDING):
-        return math.nan, needed + run_end - last
-    if expectation.measure not in DISTANCES:
-        return _measured(expectation, computed, end), None
-    assert target is not None
-    inside = (target.times >= expectation.begin) & (target.times <= end)
-    part = Curve(target.times[inside], target.values[inside])
-    return time_series.distance(computed, part, expectation.measure == "relative_rms"), None

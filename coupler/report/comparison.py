@@ -12,13 +12,8 @@ from typing import Any
 import numpy as np
 
 from quintet.coupler.files.recording import Recording
-from quintet.coupler.measures.expectation import (
-    DISTANCES,
-    Expectation,
-    Outcome,
-    curve,
-    reference_curve,
-)
+from quintet.coupler.measures.evaluation import Outcome, curve, reference_curve
+from quintet.coupler.measures.expectation import DISTANCES, Expectation
 from quintet.coupler.measures.oscillation import fit
 from quintet.coupler.measures.time_series import Curve, between, mean
 from quintet.coupler.report.panels import curve_panels, save

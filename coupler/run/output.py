@@ -15,7 +15,7 @@ from quintet.coupler.files.recording import NAME, Instant, Recorder
 from quintet.coupler.files.run_files import view_file, walls_file
 from quintet.coupler.files.vtkhdf import VtkHdf, resume
 from quintet.coupler.launch.watchdog import ENDING
-from quintet.coupler.measures.expectation import lacking_items
+from quintet.coupler.measures.evaluation import lacking_items
 from quintet.coupler.run.folder import discard_former
 from quintet.coupler.run.progress import ProgressReport, Reading
 from quintet.coupler.run.restart_points import RestartPoints

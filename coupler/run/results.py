@@ -18,7 +18,8 @@ from quintet.coupler.files.disk import reporting_disk, write_at_last
 from quintet.coupler.files.recording import Recording
 from quintet.coupler.files.run_files import LEDGER, PICTURES, RESULTS, SCENE
 from quintet.coupler.measures.advice import Load, advice, serial_share, stages
-from quintet.coupler.measures.expectation import ROUNDING, Expectation, Outcome, evaluate
+from quintet.coupler.measures.evaluation import Outcome, evaluate
+from quintet.coupler.measures.expectation import ROUNDING, Expectation
 from quintet.coupler.report.comparison import comparison
 from quintet.coupler.report.panels import can_draw
 from quintet.coupler.report.picture import Picture, draw_run
@@ -78,6 +79,7 @@ def _unknown(expectation: Expectation) -> Outcome:
         False,
         expectation.source,
         expectation.required,
+        reference_kind=expectation.reference_kind,
     )
 
 

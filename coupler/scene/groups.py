@@ -9,7 +9,8 @@ from quintet.coupler.coupling.exchange import Exchange
 from quintet.coupler.coupling.iteration.settings import unknown_fields
 from quintet.coupler.coupling.link import Link
 from quintet.coupler.coupling.plan import CouplingPlan
-from quintet.coupler.measures.expectation import Expectation, lacking_items
+from quintet.coupler.measures.evaluation import lacking_items
+from quintet.coupler.measures.expectation import Expectation
 from quintet.coupler.scene.scene import NAME, ComponentPlan, GroupSettings, SceneFile
 from quintet.interfaces.component import Fields, lacked
 from quintet.interfaces.params import read, shown, unknown

@@ -9,7 +9,8 @@ from itertools import islice
 from pathlib import Path
 from typing import Any
 
-from quintet.coupler.measures.expectation import Expectation, check
+from quintet.coupler.measures.evaluation import check
+from quintet.coupler.measures.expectation import Expectation
 from quintet.coupler.scene.component_tables import read_components, require_components
 from quintet.coupler.scene.foreign_code import announce, trusted_tables
 from quintet.coupler.scene.groups import begins_wrong, lay_out, refused, unknown_outputs

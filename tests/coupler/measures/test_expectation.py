@@ -6,13 +6,8 @@ import numpy as np
 import pytest
 
 from quintet.coupler.files.recording import Instant, Recorder, Recording
-from quintet.coupler.measures.expectation import (
-    Expectation,
-    check,
-    curve,
-    evaluate,
-    reference_curve,
-)
+from quintet.coupler.measures.evaluation import check, curve, evaluate, reference_curve
+from quintet.coupler.measures.expectation import Expectation
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.params import read
 from quintet.interfaces.ports import LOAD, MOTION

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from quintet.coupler.files.recording import Instant, Recorder, Recording
-from quintet.coupler.measures.expectation import Expectation, evaluate
+from quintet.coupler.measures.evaluation import evaluate
+from quintet.coupler.measures.expectation import Expectation
 from quintet.coupler.report import comparison as drawing
 from quintet.coupler.report.comparison import comparison
 from quintet.coupler.scene.read import load
