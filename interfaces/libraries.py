@@ -6,6 +6,7 @@ from quintet.interfaces.errors import SceneError
 
 EXTRAS = {
     "zenoh": "zenoh",
+    "cryptography": "zenoh",
     "matplotlib": "pictures",
     "jinja2": "report",
 }  # by the name that is imported

@@ -6,7 +6,16 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from quintet.coupler.cli import kinds, launching, pictures, reference, runs, scaling, studies
+from quintet.coupler.cli import (
+    certificates,
+    kinds,
+    launching,
+    pictures,
+    reference,
+    runs,
+    scaling,
+    studies,
+)
 from quintet.coupler.cli.options import BAD, Action
 from quintet.interfaces.errors import QuintetError, SceneError
 
@@ -63,7 +72,9 @@ def parser() -> argparse.ArgumentParser:
         added.set_defaults(action=action, command=name)
         return added
 
-    for group in (reference, runs, pictures, launching, studies, kinds, scaling):
+    for group in (
+        reference, runs, pictures, launching, certificates, studies, kinds, scaling
+    ):  # fmt: skip
         group.add_commands(command)
     return top
 

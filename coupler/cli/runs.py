@@ -1,6 +1,7 @@
 """Commands that run a scene, and that read runs: run, join, compile, show, diff."""
 
 import argparse
+import json
 import os
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -28,6 +29,7 @@ GRACE = (
     "after Ctrl-C or SIGTERM, wait so much longer for the end of the window and the snapshot "
     "(default: 0, which is about a second in all)"
 )
+TLS = "files with which it connects over tls (default: tls of the scene)"
 COMPILED = "scenes, or kinds, which stand for all scenes that use them (default: all scenes)"
 
 
@@ -45,6 +47,9 @@ def add_commands(command: Command) -> None:
     add_scene(joining)
     joining.add_argument("name", help="name of the component in the scene")
     joining.add_argument("--at", required=True, metavar="ENDPOINT", help="endpoint of the coupler")
+    joining.add_argument(
+        "--tls", nargs=3, default=(), metavar=("AUTHORITY", "CERTIFICATE", "KEY"), help=TLS
+    )
     compiling = command("compile", compile_kernels, "compile kernels ahead of the first run")
     compiling.add_argument("names", nargs="*", metavar="SCENE|KIND", help=COMPILED)
     compiling.add_argument("--preset", default="", help="a preset of the scene (default: quick)")
@@ -138,6 +143,9 @@ def join(options: argparse.Namespace) -> int:
     from quintet.interfaces.params import unknown
     from quintet.interfaces.serving.process import main as serve_component
 
+    if options.tls:
+        others = [text for text in options.settings if not text.startswith("tls=")]
+        options.settings = [*others, f"tls={json.dumps(list(options.tls))}"]
     scene = load_scene(options)
     if options.name not in scene.components:
         raise SceneError(unknown(f"component {options.name}", options.name, scene.components))
