@@ -6,9 +6,10 @@ the run were. Nothing in it is pickled; it is there whole or not at all, and end
 by which one that was cut or changed since is found: the run then goes on from the one before.
 """
 
+import contextlib
 import json
 import sys
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import asdict
 from pathlib import Path
 from types import MappingProxyType
@@ -37,6 +38,11 @@ from quintet.coupler.scene.scene import Scene
 from quintet.interfaces.errors import SceneError
 
 KEPT = 2  # snapshots of a run
+# What reading raises where something is missing, or of another type or shape.
+UNREADABLE = (
+    OSError, LookupError, TypeError, ValueError, AttributeError, RuntimeError, AssertionError,
+    ArithmeticError, MemoryError,
+)  # fmt: skip
 # Keys that may differ when a run goes on: no bit does.
 FREE = ("transport", "endpoint", "tls", "minutes", "patience", "restarts")
 
@@ -114,6 +120,19 @@ def _largest(value: Any) -> int:
     return OF_DATASET + int(size)
 
 
+@contextlib.contextmanager
+def _read(path: Path) -> Iterator[h5py.File]:
+    """Read a snapshot; what is in it may be anything, though its checksum holds."""
+    try:
+        with h5py.File(path, "r", locking=False) as file:
+            yield file
+    except UNREADABLE as error:
+        raise SceneError(
+            f"snapshot {path.name}: it must have what a run writes into it; it has not "
+            f"({type(error).__name__}: {error!s:.200}). Remove it, and resume from the one before."
+        ) from error
+
+
 def states(coupling: Coupling) -> dict[str, Any]:
     """What a coupling and its groups carry over from window to window."""
     groups = {k: group.save() for k, group in coupling.members.items() if isinstance(group, Group)}
@@ -122,7 +141,7 @@ def states(coupling: Coupling) -> dict[str, Any]:
 
 def restore(coupling: Coupling, judgement: Judgement, path: Path) -> None:
     """Bring a coupling whose ports are joined to a snapshot."""
-    with h5py.File(path, "r", locking=False) as file:
+    with _read(path) as file:
         tick = _get(file, "tick")
         if tick != coupling.windows.tick:
             raise SceneError(
@@ -169,7 +188,7 @@ def latest(folder: Path, quietly: bool = False) -> Path:
 
 def scene_of(path: Path, transport: str) -> Scene:
     """Read the scene of a snapshot as it was asked for, over another transport if one is given."""
-    with h5py.File(path, "r", locking=False) as file:
+    with _read(path) as file:
         asked = _get(file, "asked")
     return load(**{**asked, "transport": transport or asked["transport"]})
 
@@ -196,20 +215,20 @@ def _without_cores(scene: Mapping[str, Any]) -> dict[str, Any]:
 
 def file_sizes(path: Path) -> tuple[int, dict[str, int]]:
     """Lengths of the ledger and of the convergence logs when a snapshot was made [bytes]."""
-    with h5py.File(path, "r", locking=False) as file:
+    with _read(path) as file:
         return int(_get(file, "ledger")["size"]), dict(_get(file, "logs"))
 
 
 def check_files(path: Path) -> None:
     """Refuse to go on with files that were changed since a snapshot was made."""
-    with h5py.File(path, "r", locking=False) as file:
+    with _read(path) as file:
         sums = _get(file, "files") or {}
     require_same(path.parent, sums, sums)
 
 
 def view_checks(path: Path) -> dict[str, int]:
     """Checksums of what was in the view files of components when a snapshot was made."""
-    with h5py.File(path, "r", locking=False) as file:
+    with _read(path) as file:
         return dict(_get(file, "views") or {})
 
 
