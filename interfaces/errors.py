@@ -38,6 +38,10 @@ class LineError(QuintetError):
     """A connection broke, lost a message, or stayed silent past its deadline."""
 
 
+class LostMessage(LineError):
+    """A message that was sent did not arrive, and a later one did."""
+
+
 class DiskError(QuintetError):
     """A file that cannot be written: its disk is full, gone, or may only be read."""
 

@@ -20,8 +20,12 @@ from quintet.coupler.scene.overrides import run_arguments
 from quintet.coupler.scene.read import library
 from quintet.coupler.scene.scene import Scene
 from quintet.interfaces.errors import LineError, QuintetError, SceneError
-from quintet.interfaces.lines.admission import Admission, ForeignMessages
+from quintet.interfaces.lines import join_secret
+from quintet.interfaces.lines.access import access, common_name
+from quintet.interfaces.lines.admission import Admission
 from quintet.interfaces.lines.endpoint import Security, free_port
+from quintet.interfaces.lines.foreign_messages import ForeignMessages
+from quintet.interfaces.lines.frame_codes import topic_of
 from quintet.interfaces.lines.zenoh import Session, ZenohLine
 
 JOINING_BY_HAND = 3600.0  # s until a component says hello that somebody starts elsewhere
@@ -36,17 +40,20 @@ class OverZenoh:
         self.endpoint = scene.endpoint or f"tcp/127.0.0.1:{free_port()}"
         self.participants: dict[str, Participant] = {}
         self.probes: dict[str, ProcessProbe] = {}
-        self.secret = secrets.token_hex(16)
+        # Each process of a component has a secret of its own, for a line of its own.
+        self.secrets = {
+            name: [secrets.token_hex(16) for _ in range(1 + scene.file.restarts)]
+            for name in scene.components
+        }
         try:
-            self.session = Session(self.endpoint, True, "coupler", scene.security, self.secret)
+            self.session = self._listen()
         except LineError as error:
             raise SceneError(f"scene.{error}. Name another endpoint, or give none.") from error
-        self.foreign = ForeignMessages(self.session.zenoh)
+        self.foreign = ForeignMessages(self.session.zenoh, self.session.dropped)
         kinds = {name: plan.manifest.kind for name, plan in scene.components.items()}
         awaited = {name: kind for name, kind in kinds.items() if name in scene.elsewhere}
-        self.admission = Admission(
-            self.session.zenoh, self.secret, awaited, kinds.keys() - awaited.keys(), self.foreign
-        )
+        others = kinds.keys() - awaited.keys()
+        self.admission = Admission(self.session.zenoh, awaited, others, self.foreign, self.endpoint)
         watchdog.news = self.foreign.look
         self.run = watchdog.mark
         try:
@@ -61,12 +68,23 @@ class OverZenoh:
             self.close(False)
             raise
 
+    def _listen(self) -> Session:
+        """Open the session; over TLS each certificate has the rights of its common name."""
+        rights = None
+        if self.scene.security:
+            topics = {name: map(topic_of, parts) for name, parts in self.secrets.items()}
+            rights = access(common_name(self.scene.security.certificate), topics)
+        elif self.scene.elsewhere:
+            for name in self.scene.elsewhere:  # before anybody can ask
+                join_secret.write(self.endpoint, name, self.secrets[name][0])
+        return Session(self.endpoint, True, "coupler", self.scene.security, None, rights)
+
     def _join(self, name: str) -> Callable[[float], None]:
         """Start a component, or await it; return what waits until it is connected."""
         restarts = Restarts(self.scene.file.restarts)
         if restarts.limit:
             return self._join_restartable(name, restarts)
-        line = self._begin(name, self.session, self.secret).line
+        line = self._begin_process(name).line
         self._watch(Participant(name, line), restarts)
         return line.wait_for_partner
 
@@ -91,8 +109,9 @@ class OverZenoh:
 
     def _begin_process(self, name: str) -> ComponentProcess:
         """Begin with a secret of its own, so that nobody hears the process that was before."""
-        secret = secrets.token_hex(16)
-        self.admission.await_join(name, secret)
+        secret = self.secrets[name].pop(0)
+        if name in self.scene.elsewhere:
+            self.admission.await_join(name, secret)
         process = self._begin(name, self.session.under(secret), secret)
         self.watchdog.watch_instead(name, process.probe)
         return process
@@ -146,6 +165,8 @@ class OverZenoh:
         for participant in self.participants.values():
             participant.line.close()
         self.session.close()
+        if not self.scene.security:
+            join_secret.remove(self.endpoint, self.scene.elsewhere)
 
     def notes(self) -> list[str]:
         """See `Connection.notes`."""
@@ -167,7 +188,17 @@ def join_command(scene: Scene, name: str, endpoint: str) -> str:
     known = library().get(scene.path.parent.name)
     name_or_path = {"scene": scene.path.parent.name} if known == scene.path else {}
     asked = run_arguments(**{**scene.asked, **name_or_path})
-    return shlex.join(["quintet", "join", *asked, name, "--at", endpoint])
+    files = own_certificate(scene, name) if scene.tls else []
+    return shlex.join(["quintet", "join", *asked, name, "--at", endpoint, *files])
+
+
+def own_certificate(scene: Scene, name: str) -> list[str]:
+    """Options for the certificate of a component, if it lies beside that of the coupler."""
+    # Only runs over TLS look for it.
+    from quintet.coupler.launch.certificates import files_of
+
+    files = files_of(Path(scene.tls[1]).parent, name)
+    return ["--tls", *files] if all(Path(file).is_file() for file in files) else []
 
 
 def end_all(

@@ -17,7 +17,7 @@ from quintet.coupler.launch.process_probe import ProcessProbe
 from quintet.coupler.launch.restarts import Restarts
 from quintet.coupler.launch.watchdog import say
 from quintet.interfaces.component import Fields
-from quintet.interfaces.errors import LineError
+from quintet.interfaces.errors import LineError, LostMessage
 from quintet.interfaces.lines.message import Frame, Message, Shapes
 
 T = TypeVar("T")
@@ -104,7 +104,8 @@ class RestartableLine:
 
     def _lose(self, error: LineError) -> None:
         """Note that the process has died; raise what is no death, and one too many."""
-        if isinstance(error, ReplayError) or not self._process.is_over():
+        died = isinstance(error, LostMessage) or self._process.is_over()
+        if isinstance(error, ReplayError) or not died:
             cause = f"{self._lost}; no other process took over: {error}"
             raise LineError(cause) if self._lost else error
         self._lost = str(error)

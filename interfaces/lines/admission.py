@@ -1,104 +1,29 @@
-"""Who may join a run by hand, and messages from outside the run, which are counted and dropped.
+"""Who may join a run by hand.
 
-The messages of a run travel on keys with a secret, verbatim part (``@...``), which no wildcard of
-zenoh matches: whoever does not know it can neither read nor send them. A component that the run
-starts gets the secret in its environment. One that is started by hand asks for it, and gets it
-once for each awaited name. This keeps other programs and mistakes out; it is no authentication.
+The messages of a component travel on keys with a verbatim part (``@...``) that is made of a secret,
+and have codes (`frame_codes`). A component that the run starts gets the secret in its environment.
+One that is started by hand asks to join, once for each awaited name: over TLS with a certificate of
+its name, over plain tcp with a proof that it can read the file of the secret.
 """
 
 import json
 import threading
 import time
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, NamedTuple
 
 from quintet.interfaces.errors import LineError
+from quintet.interfaces.lines import join_secret
+from quintet.interfaces.lines.access import ADMIT, JOIN
+from quintet.interfaces.lines.foreign_messages import ForeignMessages, printable
 
-JOIN = "quintet/join"
-OUTSIDE = "quintet/**"  # all keys of quintet but those with a secret part
 ANSWERING = 5.0  # s for the coupler to answer who asks to join
+AGAIN = 0.1  # s until a request is repeated that nobody has answered
 LONGEST_REQUEST = 4096  # bytes
-TOO_MANY = 1000  # messages between two looks, after which nobody listens to more for a while
-DEAF = 5.0  # s
-REPEATED = 10.0  # s between two reports
-
-
-@dataclass
-class ForeignMessages:
-    """Messages and requests that came from outside a run.
-
-    Their contents are not kept. Where too many come, the subscription is given up for a while:
-    zenoh drops them then without work for this process.
-    """
-
-    session: Any
-    count: int = 0
-    refused: int = 0  # requests to join
-    first: str = ""  # of the messages
-    reason: str = ""  # why the last request to join was refused
-    at_least: bool = False
-    _lock: threading.Lock = field(default_factory=threading.Lock)
-    _subscription: Any = None
-    _reported: int = 0
-    _report_at: float = 0.0
-    _listen_at: float = 0.0
-
-    def look(self) -> str:
-        """Return what the user should know now; called many times a second."""
-        # Imported by runs over zenoh only.
-        from zenoh import handlers
-
-        now = time.monotonic()
-        if self._subscription is None:
-            if now >= self._listen_at:
-                # Not a function: its thread would still run as Python ends, and abort the process.
-                self._subscription = self.session.declare_subscriber(
-                    OUTSIDE, handlers.RingChannel(TOO_MANY + 1)
-                )
-        elif self._count_new() > TOO_MANY:
-            self._subscription.undeclare()
-            self._subscription, self._listen_at = None, now + DEAF
-            self.at_least = True
-        if self.count + self.refused == self._reported or now < self._report_at:
-            return ""
-        self._reported, self._report_at = self.count + self.refused, now + REPEATED
-        return "; ".join(self.summary())
-
-    def summary(self) -> list[str]:
-        """What came so far, in sentences."""
-        said = []
-        if self.count:
-            number = f"{'at least ' * self.at_least}{self.count}"
-            said.append(
-                f"{number} message(s) from outside the run were dropped; the first: {self.first}. "
-                "The run is not affected. End the program that sends them, or use another endpoint."
-            )
-        if self.refused:
-            said.append(f"{self.refused} request(s) to join were refused; the last: {self.reason}")
-        return said
-
-    def _count_new(self) -> int:
-        """Count what came since the last look, up to `TOO_MANY` + 1."""
-        number = 0
-        while number <= TOO_MANY and (sample := self._subscription.try_recv()) is not None:
-            if not self.first:
-                size = len(sample.payload.to_bytes())
-                self.first = f"{size} bytes to {_printable(str(sample.key_expr))}"
-            number += 1
-        self.count += number
-        return number
-
-    def refuse(self, reason: str) -> str:
-        """Count a request to join that is refused."""
-        with self._lock:
-            self.refused += 1
-            self.reason = reason
-        return reason
 
 
 class Admission:
-    """Answers who asks to join by hand: the secret of the run, or why it is refused.
+    """Answers who asks to join by hand: that it may, or why it is refused.
 
     Parameters
     ----------
@@ -106,40 +31,49 @@ class Admission:
         Kind of every component that is to join by hand, by its name.
     others : collection
         Names of the components that the run itself starts.
+    endpoint : str
+        Where the coupler listens. Over TLS the secret is in the answer, else in a file.
     """
 
     def __init__(
         self,
         session: Any,
-        secret: str,
         awaited: Mapping[str, str],
         others: Collection[str],
         foreign: ForeignMessages,
+        endpoint: str,
     ) -> None:
         self.awaited, self.others, self.foreign = awaited, others, foreign
+        self.endpoint, self.secured = endpoint, endpoint.startswith("tls/")
         self.joined: dict[str, str] = {}  # who, by name
-        self._secrets = dict.fromkeys(awaited, secret)
+        self._secrets: dict[str, str] = {}
         self._lock = threading.Lock()
-        self._requests = session.declare_queryable(f"{JOIN}/*", self._answer)
+        self._requests = [session.declare_queryable(f"{JOIN}/*", self._answer)]
+        if self.secured:
+            keys = [f"{ADMIT}/{name}" for name in awaited]
+            self._requests += [session.declare_queryable(key, self._answer) for key in keys]
 
     def _answer(self, query: Any) -> None:
         key = str(query.key_expr)
-        name = key.removeprefix(f"{JOIN}/")
         payload = query.payload.to_bytes() if query.payload is not None else b""
+        admits = self.secured and key.startswith(f"{ADMIT}/")
+        name = key.removeprefix(f"{ADMIT if admits else JOIN}/")
         with self._lock:
-            refusal, secret = self.refusal(name, payload), self._secrets.get(name, "")
+            refusal, secret = self.refusal(name, payload, admits), self._secrets.get(name, "")
         if refusal:
             query.reply_err(self.foreign.refuse(refusal).encode())
         else:
-            query.reply(key, secret.encode())
+            query.reply(key, secret.encode() if admits else b"")
 
     def await_join(self, name: str, secret: str) -> None:
-        """Let somebody join under a name, whoever did before; hand out this secret."""
+        """Let somebody join under a name, whoever did before, with this secret."""
+        if not self.secured:
+            join_secret.write(self.endpoint, name, secret)
         with self._lock:
             self.joined.pop(name, None)
             self._secrets[name] = secret
 
-    def refusal(self, name: str, request: bytes) -> str:
+    def refusal(self, name: str, request: bytes, certified: bool) -> str:
         """Why a component may not join; "" where it may, and from then on nobody else."""
         asking = _request(request)
         if asking is None:
@@ -151,21 +85,50 @@ class Admission:
             )
         if name not in self.awaited:
             awaited = ", ".join(sorted(self.awaited)) or "nobody"
-            return f"the run awaits {awaited}, not {_printable(name)}."
-        kind, who = asking
-        if kind != self.awaited[name]:
+            return f"the run awaits {awaited}, not {printable(name)}."
+        if asking.kind != self.awaited[name]:
             return (
-                f"{name} must be of kind {self.awaited[name]}; found {kind}. Use the scene of the "
-                "run."
+                f"{name} must be of kind {self.awaited[name]}; found {asking.kind}. Use the scene "
+                "of the run."
             )
+        if refusal := self._unproven(name, asking, certified):
+            return refusal
         if name in self.joined:
             return f"{name} has joined already ({self.joined[name]}). End the second one."
-        self.joined[name] = who
+        if name not in self._secrets:
+            return "the run does not await it yet. Join again."
+        self.joined[name] = asking.who
         return ""
 
+    def _unproven(self, name: str, asking: "Request", certified: bool) -> str:
+        """Why it is not known that a request comes from the component that it names."""
+        if self.secured and not certified:
+            return (
+                f"{name} must join with a certificate whose common name is {name}; that of "
+                f"{asking.who} has {asking.certificate}. Name its certificate with --tls."
+            )
+        secret = self._secrets.get(name, "")
+        if self.secured or join_secret.proves(asking.proof, secret, name, asking.text):
+            return ""
+        return (
+            f"over plain tcp {name} must be started by the user who started the run, on the same "
+            f"host: it must know the secret in {join_secret.path_of(self.endpoint, name)}; "
+            f"{asking.who} does not. Join as this user, or use an endpoint with tls."
+        )
 
-def _request(request: bytes) -> tuple[str, str] | None:
-    """Kind of a component that asks to join, and which process it is."""
+
+class Request(NamedTuple):
+    """A request to join, made printable."""
+
+    kind: str
+    who: str
+    certificate: str  # common name, as the sender says
+    proof: object
+    text: str  # to which the proof belongs
+
+
+def _request(request: bytes) -> Request | None:
+    """Read a request to join."""
     if len(request) > LONGEST_REQUEST:
         return None
     try:
@@ -175,21 +138,40 @@ def _request(request: bytes) -> tuple[str, str] | None:
         return None
     if not (isinstance(kind, str) and isinstance(host, str) and type(pid) is int):
         return None
-    return _printable(kind), f"process {pid} on {_printable(host)}"
+    who = f"process {pid} on {printable(host)}"
+    certificate = printable(str(asking.get("certificate", "none")))
+    text = _proven_text(asking)
+    return Request(printable(kind), who, certificate, asking.get("proof"), text)
 
 
-def _printable(text: str) -> str:
-    """A text from outside, short and without what a terminal or an encoding takes for its own."""
-    return "".join(sign if sign.isprintable() else "?" for sign in text[:80])
+def _proven_text(asking: Mapping[str, Any]) -> str:
+    return json.dumps([asking["kind"], asking["host"], asking["pid"]])
 
 
-def ask_to_join(session: Any, name: str, about: Mapping[str, Any]) -> str:
-    """Ask the coupler for the secret of its run; raise what it answers otherwise."""
-    asking = json.dumps({key: about[key] for key in ("kind", "host", "pid")})
-    for reply in session.get(f"{JOIN}/{name}", payload=asking.encode(), timeout=ANSWERING):
-        if reply.ok is not None:
-            return str(reply.ok.payload.to_bytes().decode())
-        raise LineError(f"the run refuses it: {reply.err.payload.to_bytes().decode()}")
+def ask_to_join(
+    session: Any, endpoint: str, name: str, about: Mapping[str, Any], certificate: str = ""
+) -> str:
+    """Ask the coupler to join; return the secret of the line, or raise what it answers.
+
+    `certificate` is the common name of that with which the session connects, over TLS.
+    """
+    asking: dict[str, Any] = {key: about[key] for key in ("kind", "host", "pid")}
+    keys, secret = [f"{JOIN}/{name}"], ""
+    if certificate:
+        asking["certificate"] = certificate
+        keys.insert(0, f"{ADMIT}/{name}")  # where only a certificate of this name is heard
+    elif secret := join_secret.read(endpoint, name):
+        asking["proof"] = join_secret.proof(secret, name, _proven_text(asking))
+    payload = json.dumps(asking).encode()
+    limit = time.monotonic() + ANSWERING
+    while time.monotonic() < limit:
+        for key in keys:
+            for reply in session.get(key, payload=payload, timeout=ANSWERING):
+                if reply.ok is not None:
+                    return secret or str(reply.ok.payload.to_bytes().decode())
+                refusal = reply.err.payload.to_bytes().decode()
+                raise LineError(f"the run refuses it: {refusal}")
+        time.sleep(AGAIN)
     raise LineError(
         f"no run answered within {ANSWERING:g} s. Give the endpoint that the run prints."
     )

@@ -42,11 +42,16 @@ class Message:
 
 
 def encode(
-    header: Mapping[str, Any], fields: Fields, scratch: bytearray | None, limit: int = UNLIMITED
+    header: Mapping[str, Any],
+    fields: Fields,
+    scratch: bytearray | None,
+    limit: int = UNLIMITED,
+    room: int = 0,
 ) -> bytearray:
     """Pack a message into one frame; `scratch` is reused when it has the right length.
 
-    A frame of more than `limit` bytes is refused before any memory is taken for it.
+    A frame of more than `limit` bytes is refused before any memory is taken for it. `room` bytes
+    are left free behind it.
     """
     try:
         layout = lay_out(tuple([(key, a.dtype, a.shape) for key, a in fields.items()]))
@@ -58,7 +63,8 @@ def encode(
     total = first + layout.size
     if total > limit:
         _refuse_large(layout, total, limit)
-    frame = scratch if scratch is not None and len(scratch) == total else bytearray(total)
+    size = total + room
+    frame = scratch if scratch is not None and len(scratch) == size else bytearray(size)
     PREFIX.pack_into(frame, 0, MAGIC, len(packed), total, zlib.crc32(packed))
     frame[PREFIX.size : PREFIX.size + len(packed)] = packed
     for place, array in zip(layout.places, fields.values(), strict=True):

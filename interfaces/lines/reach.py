@@ -15,6 +15,7 @@ NO_MESSAGE = b"\x03\x00\xff\xff\xff"  # 3 bytes that no version of zenoh takes f
 ZENOH_CLOSE = b"\x02\x00\x03"  # how a message of zenoh begins that closes a connection
 TLS_ALERT = 0x15
 EXPIRED, NOT_YET_VALID, WRONG_NAMES = 10, 9, (62, 64)  # verify codes of OpenSSL
+NOT_FOR_SERVERS = 26
 UNKNOWN_AUTHORITY = (18, 19, 20, 21)
 OTHER_CLIENTS = "unknown ca", "bad certificate", "certificate unknown", "decrypt error"
 
@@ -146,6 +147,11 @@ def _of_certificate(host: str, error: ssl.SSLCertVerificationError, security: Se
         return (
             f"the certificate shown there is not valid for {host}. Its subjectAltName must have "
             "the host of the endpoint: use that name, or issue the certificate for it."
+        )
+    if error.verify_code == NOT_FOR_SERVERS:
+        return (
+            "the certificate shown there is that of a component, with which nothing may listen. "
+            "Start the run with the certificate of its coupler."
         )
     if error.verify_code in (EXPIRED, NOT_YET_VALID):
         state = "has expired" if error.verify_code == EXPIRED else "is not valid yet"

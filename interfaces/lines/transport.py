@@ -77,6 +77,7 @@ class FramedLine(ABC):
     """A line over a transport of bytes: numbered messages of one run, in order and complete."""
 
     limit = UNLIMITED  # bytes of a frame
+    room = 0  # bytes behind a frame for what the transport adds
 
     def __init__(self, run: str, name: str) -> None:
         self.run = run  # "" until the first message of the coupler
@@ -90,7 +91,7 @@ class FramedLine(ABC):
     def send(self, header: Mapping[str, Any], fields: Fields) -> None:
         """See `Line.send`."""
         stamped = {**header, "run": self.run, "from": self.name, "seq": self._sent}
-        self._scratch = encode(stamped, fields, self._scratch, self.limit)
+        self._scratch = encode(stamped, fields, self._scratch, self.limit, self.room)
         self._sent += 1
         self._put(self._scratch)
 
@@ -130,7 +131,7 @@ class FramedLine(ABC):
 
     @abstractmethod
     def _put(self, frame: bytearray) -> None:
-        """Send a frame; its buffer may be reused after the call."""
+        """Send a frame and the room behind it; its buffer may be reused after the call."""
 
     @abstractmethod
     def _poll(self) -> Frame | None:

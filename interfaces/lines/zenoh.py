@@ -15,13 +15,17 @@ import zenoh
 from zenoh import handlers
 
 from quintet.interfaces.errors import LineError
+from quintet.interfaces.lines.access import common_name
 from quintet.interfaces.lines.admission import ask_to_join
 from quintet.interfaces.lines.endpoint import Security, check_endpoint
+from quintet.interfaces.lines.frame_codes import CODE, DroppedFrames, FrameCodes, topic_of
 from quintet.interfaces.lines.message import Frame
 from quintet.interfaces.lines.reach import Obstacle, await_listener, obstacle
 from quintet.interfaces.lines.transport import FramedLine, wait
 
+DROPPED_AT_ONCE = 100  # messages that are dropped until deadlines are looked at again
 CAPACITY = 1024  # messages that a receiver may leave unread; lock-step needs two or three
+WAITING = 16  # batches of 64 KiB that wait to be sent: with zenoh's 4, large messages take longer
 BLOCKED = 600_000_000  # us that a full connection may block before it is given up
 OPEN = "open"  # the secret of lines that nobody has to be kept from
 CONNECTING = 10_000  # ms
@@ -31,7 +35,12 @@ LARGEST = 1 << 30  # bytes of a message; zenoh drops larger ones without a word
 LEASE = 60_000  # ms without a keep-alive; shorter ones expire while a solver uses all cores
 
 
-def configuration(endpoint: str, listens: bool, security: Security | None) -> zenoh.Config:
+def configuration(
+    endpoint: str,
+    listens: bool,
+    security: Security | None,
+    access: Mapping[str, Any] | None = None,
+) -> zenoh.Config:
     """Build the settings of a session at one endpoint, and nowhere else."""
     check_endpoint(endpoint, security)
     settings: dict[str, Any] = {
@@ -41,6 +50,7 @@ def configuration(endpoint: str, listens: bool, security: Security | None) -> ze
         "transport/shared_memory/enabled": False,
         "transport/link/tx/lease": LEASE,
         "transport/link/rx/max_message_size": LARGEST,
+        "transport/link/tx/queue/size/data": WAITING,
         "transport/link/tx/queue/congestion_control/block/wait_before_close": BLOCKED,
         "listen/endpoints": [endpoint] if listens else [],
         "connect/endpoints": [] if listens else [endpoint],
@@ -57,6 +67,8 @@ def configuration(endpoint: str, listens: bool, security: Security | None) -> ze
             "connect_certificate": security.certificate,
             "connect_private_key": security.key,
         }
+    if access is not None:
+        settings["access_control"] = access
     config = zenoh.Config()
     for key, value in settings.items():
         config.insert_json5(key, json.dumps(value))
@@ -66,7 +78,7 @@ def configuration(endpoint: str, listens: bool, security: Security | None) -> ze
 class Session:
     """A zenoh session and the liveliness of its peers; lines share it.
 
-    All its keys have the secret of the run as a verbatim part: no wildcard of zenoh matches them,
+    All its keys have a verbatim part that is made of a secret: no wildcard of zenoh matches them,
     so that others can neither read nor send messages on them. With None as secret the session
     only connects, until it is given one.
     """
@@ -78,12 +90,13 @@ class Session:
         me: str,
         security: Security | None,
         secret: str | None = OPEN,
+        access: Mapping[str, Any] | None = None,
     ) -> None:
         self.me = me
         doubt = Obstacle() if listens else obstacle(endpoint, security)
         if doubt.text and doubt.certain:
             raise LineError(f"endpoint {endpoint}: {me} cannot reach it: {doubt.text}")
-        config = configuration(endpoint, listens, security)
+        config = configuration(endpoint, listens, security, access)
         if doubt.text:
             config.insert_json5("connect/timeout_ms", json.dumps(DOUBTFUL))
         try:
@@ -93,12 +106,14 @@ class Session:
             raise LineError(f"endpoint {endpoint}: {me} cannot reach it: {reason}") from error
         self.alive: set[str] = set()
         self.ended: set[str] = set()
+        self.dropped = DroppedFrames()
         if secret is not None:
             self.enter(secret)
 
     def enter(self, secret: str) -> None:
-        """Take part in the run with this secret."""
-        self.root = f"quintet/@{secret}"
+        """Take part in the run with this secret, which is not sent."""
+        self.secret = secret
+        self.root = f"quintet/@{topic_of(secret)}"
         self._token = self.zenoh.liveliness().declare_token(f"{self.root}/alive/{self.me}")
         self._liveliness = self.zenoh.liveliness().declare_subscriber(
             f"{self.root}/alive/*", handlers.FifoChannel(CAPACITY), history=True
@@ -135,6 +150,7 @@ class ZenohLine(FramedLine):
     """A line between `me` and `other` over a session."""
 
     limit = LARGEST - (1 << 16)  # zenoh adds its own header
+    room = CODE.size
 
     def __init__(
         self, session: Session, run: str, other: str, closes_session: bool = False
@@ -143,6 +159,8 @@ class ZenohLine(FramedLine):
         self.session = session
         self.other = other
         self._closes_session = closes_session
+        self._codes_in = FrameCodes(session.secret, other, session.me)
+        self._codes_out = FrameCodes(session.secret, session.me, other)
         self._inbox = session.zenoh.declare_subscriber(
             f"{session.root}/{other}/to/{session.me}", handlers.FifoChannel(CAPACITY)
         )
@@ -159,17 +177,30 @@ class ZenohLine(FramedLine):
         wait(lambda: outbox.matching_status.matching or None, seconds, self._reason)
 
     def _put(self, frame: bytearray) -> None:
+        self._codes_out.add(frame)
+        self._publish(frame)
+
+    def _publish(self, frame: bytearray) -> None:
+        """Hand a frame and its code to zenoh."""
         try:
             self._outbox.put(frame)
         except zenoh.ZError as error:
             raise LineError(f"cannot send to {self.other}: {error}") from error
 
     def _poll(self) -> Frame | None:
-        try:
-            sample = self._inbox.try_recv()
-        except zenoh.ZError as error:
-            raise LineError(f"the connection to {self.other} is closed: {error}") from error
-        return None if sample is None else sample.payload.to_bytes()
+        dropped = self.session.dropped
+        for _ in range(DROPPED_AT_ONCE):
+            try:
+                sample = self._inbox.try_recv()
+            except zenoh.ZError as error:
+                raise LineError(f"the connection to {self.other} is closed: {error}") from error
+            if sample is None:
+                return None
+            frame = self._codes_in.open(sample.payload.to_bytes(), dropped)
+            if frame is not None:
+                return frame
+            dropped.report()
+        return None
 
     def _broken(self) -> str:
         return f"{self.other} is gone" if self.partner_has_left() else ""
@@ -212,7 +243,8 @@ def join(
     await_listener(endpoint, STARTING, say)
     session = Session(endpoint, False, name, security, None)
     try:
-        session.enter(ask_to_join(session.zenoh, name, about))
+        certificate = common_name(security.certificate) if security else ""
+        session.enter(ask_to_join(session.zenoh, endpoint, name, about, certificate))
     except BaseException:
         session.close()
         raise

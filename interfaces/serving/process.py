@@ -199,10 +199,13 @@ def over_zenoh(options: argparse.Namespace, hello: dict[str, Any]) -> Line:
     security = Security(*options.tls) if options.tls else None
     secret = os.environ.pop(SECRET, "")  # processes that the solver starts need not have it
     if secret:
-        return connect(options.at, options.name, security, secret)
-    return join(
-        options.at, options.name, hello, security, lambda text: say(f"{options.name}: {text}")
-    )
+        line = connect(options.at, options.name, security, secret)
+    else:
+        line = join(
+            options.at, options.name, hello, security, lambda text: say(f"{options.name}: {text}")
+        )
+    line.session.dropped.tell = lambda text: say(f"{options.name}: {text}")
+    return line
 
 
 def over_mpi(name: str) -> Line:

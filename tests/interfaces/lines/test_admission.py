@@ -7,13 +7,10 @@ import numpy as np
 import pytest
 
 from quintet.interfaces.errors import LineError
-from quintet.interfaces.lines.admission import (
-    LONGEST_REQUEST,
-    TOO_MANY,
-    Admission,
-    ForeignMessages,
-)
+from quintet.interfaces.lines import join_secret
+from quintet.interfaces.lines.admission import LONGEST_REQUEST, Admission
 from quintet.interfaces.lines.endpoint import free_port
+from quintet.interfaces.lines.foreign_messages import TOO_MANY, ForeignMessages
 from quintet.interfaces.lines.zenoh import Session, ZenohLine, configuration, connect, join
 
 pytestmark = pytest.mark.zenoh
@@ -32,15 +29,22 @@ def endpoint():
     return f"tcp/127.0.0.1:{free_port()}"
 
 
+def admission(session, endpoint, foreign, others=()):
+    """Of a run that awaits `pong`."""
+    opened = Admission(session.zenoh, {"pong": "toy"}, others, foreign, endpoint)
+    opened.await_join("pong", SECRET)
+    return opened
+
+
 @pytest.fixture
 def coupler(endpoint):
     session = Session(endpoint, True, "coupler", None, SECRET)
-    session.foreign = ForeignMessages(session.zenoh)
+    session.foreign = ForeignMessages(session.zenoh, session.dropped)
     session.foreign.look()
-    others = ("ping",)
-    session.admission = Admission(session.zenoh, SECRET, {"pong": "toy"}, others, session.foreign)
+    session.admission = admission(session, endpoint, session.foreign, ("ping",))
     yield session
     session.close()
+    join_secret.remove(endpoint, ["pong"])
 
 
 @pytest.fixture
@@ -194,13 +198,14 @@ def test_a_join_may_begin_before_its_run(endpoint, monkeypatch):
         said.append(text)
         session = Session(endpoint, True, "coupler", None, SECRET)
         foreign = ForeignMessages(session.zenoh)
-        admission = Admission(session.zenoh, SECRET, {"pong": "toy"}, (), foreign)
-        opened.extend([session, admission, ZenohLine(session, "r1", "pong")])
+        opened.extend([session, admission(session, endpoint, foreign)])
+        opened.append(ZenohLine(session, "r1", "pong"))
 
     other = join(endpoint, "pong", WHO, None, begin)
     assert said == [f"nobody listens at {endpoint} yet; waiting for up to 10 s"]
     other.close()
     opened[0].close()
+    join_secret.remove(endpoint, ["pong"])
     monkeypatch.setattr("quintet.interfaces.lines.zenoh.STARTING", 0.3)
     with pytest.raises(LineError, match="nobody listens on port"):
         join(endpoint, "pong", WHO, None, said.append)

@@ -174,6 +174,7 @@ def test_a_component_is_built_from_nothing_else_than_its_parameters(scene, count
 @pytest.mark.zenoh
 @pytest.mark.parametrize("count", [200, pytest.param(20_000, marks=pytest.mark.full)])
 def test_a_live_endpoint_refuses_them_alike(sent, count):
+    """Frames with right codes, as of a component that is faulty."""
     random, refused = np.random.default_rng(15), 0
     endpoint = f"tcp/127.0.0.1:{free_port()}"
     ours = Session(endpoint, True, "coupler", None)
@@ -181,7 +182,8 @@ def test_a_live_endpoint_refuses_them_alike(sent, count):
     other = ZenohLine(Session(endpoint, False, "pong", None), "", "coupler", True)
     other.wait_for_partner(10.0)
     for _ in range(count):
-        other._put(mutated(sent[1][random.integers(len(sent[1]))], random))
+        frame = mutated(sent[1][random.integers(len(sent[1]))], random)
+        other._put(bytearray(frame) + bytes(other.room))
         try:
             line.receive(30.0)
         except QuintetError as error:
@@ -190,6 +192,35 @@ def test_a_live_endpoint_refuses_them_alike(sent, count):
     other.close()
     ours.close()
     assert refused > 0.9 * count
+
+
+@pytest.mark.zenoh
+@pytest.mark.parametrize("count", [500, pytest.param(20_000, marks=pytest.mark.full)])
+def test_a_live_endpoint_drops_frames_that_are_forged_damaged_or_repeated(sent, count):
+    random, repeated = np.random.default_rng(16), 0
+    endpoint = f"tcp/127.0.0.1:{free_port()}"
+    ours = Session(endpoint, True, "coupler", None)
+    line = ZenohLine(ours, "", "pong")
+    other = ZenohLine(Session(endpoint, False, "pong", None), "", "coupler", True)
+    other.wait_for_partner(10.0)
+    publish = other._publish
+    for n in range(count):
+        forged = mutated(sent[1][random.integers(len(sent[1]))], random)
+        publish(bytearray(forged) + random.bytes(random.integers(40)))
+        if n % 50 == 0:
+            copies = []
+            other._publish = lambda frame, copies=copies: copies.append(bytearray(frame))
+            other.send({"order": "done", "n": n}, {})
+            for frame in (*copies, *copies):
+                publish(frame)
+            assert line.receive(30.0).header["n"] == n
+            repeated += 1
+    deadline = time.monotonic() + 30.0
+    while ours.dropped.count() < count + repeated and time.monotonic() < deadline:
+        assert line.peek() is None
+    assert (ours.dropped.invalid, ours.dropped.repeated) == (count, repeated)
+    other.close()
+    ours.close()
 
 
 GO = {"params": {"items": 5, "substeps": 3}, "threads": 1}
