@@ -26,6 +26,7 @@ from quintet.interfaces.lines.admission import Admission
 from quintet.interfaces.lines.endpoint import Security, free_port
 from quintet.interfaces.lines.foreign_messages import ForeignMessages
 from quintet.interfaces.lines.frame_codes import topic_of
+from quintet.interfaces.lines.transport import REPEAT
 from quintet.interfaces.lines.zenoh import Session, ZenohLine
 
 JOINING_BY_HAND = 3600.0  # s until a component says hello that somebody starts elsewhere
@@ -119,6 +120,8 @@ class OverZenoh:
     def _begin(self, name: str, session: Session, secret: str) -> ComponentProcess:
         """Start a process of a component, or await it, with a line to it."""
         line, mark = ZenohLine(session, self.run, name), secrets.token_hex(8)
+        if self.scene.file.restarts:
+            line.repeat_after = REPEAT
         awaited = name in self.scene.elsewhere
         probe = self.probes[name] = probe_of(self.scene, name, awaited=awaited)
         if awaited:

@@ -12,7 +12,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from hashlib import blake2b
 
-from quintet.interfaces.errors import LostMessage
 from quintet.interfaces.lines.message import Frame
 
 CODE = struct.Struct("<Q16s")  # number of the message, authentication code
@@ -90,10 +89,10 @@ class FrameCodes:
         self.number += 1
 
     def open(self, received: bytes, dropped: DroppedFrames) -> Frame | None:
-        """Return the frame of the next message without its code.
+        """Return the frame of a new message without its code; None, and count it, if it is none.
 
-        If it is not the next message it is counted, and the result is None. If messages are
-        missing before it, an error is raised.
+        Numbers may be left out: a message that was lost is sent again under another number. What is
+        missing is found by the number in its header (`FramedLine.receive`).
         """
         end = len(received) - CODE.size
         if end < 0:
@@ -107,12 +106,7 @@ class FrameCodes:
         if number < self.number:
             dropped.repeated += 1
             return None
-        if number > self.number:
-            raise LostMessage(
-                f"message {self.number} to {self.receiver} was lost: message {number} arrived. "
-                "Run again from the last snapshot, or set `restarts`."
-            )
-        self.number += 1
+        self.number = number + 1
         return frame
 
     def _tag(self, number: int, frame: Frame) -> bytes:

@@ -97,7 +97,12 @@ def decode(frame: Frame, expected: Shapes | None = None) -> Message:
 
 def order_of(frame: Frame) -> str:
     """Order or answer that a message carries."""
-    return str(_header(frame)[0].get("order"))
+    return str(header_of(frame).get("order"))
+
+
+def header_of(frame: Frame) -> dict[str, Any]:
+    """Header of a message, checked."""
+    return _header(frame)[0]
 
 
 def _header(frame: Frame) -> tuple[dict[str, Any], int]:

@@ -2,8 +2,13 @@
 
 ``Line`` is the interface for the coupler and the serving loop. ``FramedLine`` adds to any
 transport of bytes sequence numbers, the name of the run, and a watch on the other side.
+
+A message that arrives twice is used once. A lost one is sent again where a line is set to do so:
+the coupler repeats an order that is not answered, and a component that has answered it already
+repeats its answer. A gap in the sequence is an error.
 """
 
+import math
 import os
 import reprlib
 import time
@@ -12,8 +17,16 @@ from collections.abc import Callable, Mapping
 from typing import Any, Protocol, TypeVar
 
 from quintet.interfaces.component import Fields
-from quintet.interfaces.errors import LineError
-from quintet.interfaces.lines.message import UNLIMITED, Frame, Message, Shapes, decode, encode
+from quintet.interfaces.errors import LineError, LostMessage, MessageError
+from quintet.interfaces.lines.message import (
+    UNLIMITED,
+    Frame,
+    Message,
+    Shapes,
+    decode,
+    encode,
+    header_of,
+)
 
 T = TypeVar("T")
 
@@ -21,6 +34,9 @@ SPIN = 3e-4  # s of polling without sleep: longer than a round trip, shorter tha
 SLEEP = 2e-5  # s, the first sleep
 LONGEST_SLEEP = 1e-3  # s
 SETTLING = 0.05  # s from a connection's end until the system knows how the process ended
+REPEAT = (
+    5.0  # s without an answer until the last message is sent again; then twice as long, and so on
+)
 
 
 class Line(Protocol):
@@ -83,6 +99,9 @@ class FramedLine(ABC):
         self.run = run  # "" until the first message of the coupler
         self.name = name  # who sends
         self.watch: Callable[[], str] = lambda: ""  # why an answer will not come, if known
+        self.repeat_after = math.inf  # s without an answer until the last message is sent again
+        self.answers_again = False  # whether to do so when the other side repeats its last message
+        self._repeat_at, self._pause = math.inf, math.inf  # s
         self._sent = 0
         self._received = 0
         self._scratch: bytearray | None = None
@@ -93,17 +112,20 @@ class FramedLine(ABC):
         stamped = {**header, "run": self.run, "from": self.name, "seq": self._sent}
         self._scratch = encode(stamped, fields, self._scratch, self.limit, self.room)
         self._sent += 1
+        self._pause = self.repeat_after
+        self._repeat_at = time.monotonic() + self._pause
         self._put(self._scratch)
 
     def receive(self, seconds: float, expected: Shapes | None = None) -> Message:
         """See `Line.receive`."""
-        message = decode(wait(self._next, seconds, self._reason), expected)
+        message = None
+        while message is None:
+            message = self._decode(wait(self._next, seconds, self._reason), expected)
         seq, run = message.header.get("seq"), message.header.get("run")
         if seq != self._received:
-            raise LineError(
+            raise LostMessage(
                 f"message {self._received} was expected, message {reprlib.repr(seq)} arrived: "
-                "messages were "
-                "lost or repeated. Nothing can be recovered; run again from the last snapshot."
+                "messages were lost. Run again from the last snapshot, or set `restarts`."
             )
         self._received += 1
         if not isinstance(run, str):
@@ -115,15 +137,58 @@ class FramedLine(ABC):
 
     def peek(self) -> Frame | None:
         """Return the next frame if it has arrived; it stays the next to be received."""
-        if self._ahead is None:
-            self._ahead = self._poll()
+        while self._ahead is None and (frame := self._poll()) is not None:
+            if not self._is_old(frame):
+                self._ahead = frame
         return self._ahead
+
+    def _decode(self, frame: Frame, expected: Shapes | None) -> Message | None:
+        """Decode a frame; None where it is an old one, which may have any shapes."""
+        try:
+            message = decode(frame, expected)
+        except MessageError:
+            if not self._is_old(frame):
+                raise
+            message = None
+        if message is not None:
+            seq = message.header.get("seq")
+            if seq == self._received or not self._was_received(message.header):
+                return message
+        if self.answers_again and self._was_last(frame) and self._scratch is not None:
+            self._put(self._scratch)
+        return None
+
+    def _is_old(self, frame: Frame) -> bool:
+        """Whether a frame was received before."""
+        try:
+            return self._was_received(header_of(frame))
+        except MessageError:
+            return False
+
+    def _was_received(self, header: Mapping[str, Any]) -> bool:
+        seq = header.get("seq")
+        return (
+            type(seq) is int and 0 <= seq < self._received and header.get("run") in ("", self.run)
+        )
+
+    def _was_last(self, frame: Frame) -> bool:
+        """Whether an old frame is the one that was received last."""
+        return bool(header_of(frame)["seq"] == self._received - 1)
+
+    def _repeat(self) -> None:
+        """Send the last message again if its answer does not come."""
+        now = time.monotonic()
+        if now > self._repeat_at and self._scratch is not None:
+            self._pause *= 2.0
+            self._repeat_at = now + self._pause
+            self._put(self._scratch)
 
     def _next(self) -> Frame | None:
         frame, self._ahead = self._ahead, None
         return self._poll() if frame is None else frame
 
     def _reason(self) -> str:
+        self._repeat()
         broken = self._broken()
         if broken:
             time.sleep(SETTLING)

@@ -253,6 +253,7 @@ def join(
 
 def _to_coupler(session: Session) -> ZenohLine:
     line = ZenohLine(session, "", "coupler", closes_session=True)
+    line.answers_again = True
     line.wait_for_partner(30.0)
     return line
 

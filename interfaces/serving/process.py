@@ -109,7 +109,7 @@ def run(manifest: Manifest, options: argparse.Namespace) -> int:
         return 3
     if order.order != "go":
         return 0
-    status = 3
+    status, lost = 3, False
     try:
         start = time.perf_counter()
         component = build(manifest, order.header, ranks.communicator if ranks else None)
@@ -121,11 +121,12 @@ def run(manifest: Manifest, options: argparse.Namespace) -> int:
     except LineError as error:
         say(f"{options.name}: the coupler: {error}")
         end_children()  # nobody else does
+        lost = not options.mpi  # the coupler is told by the end of this process
     except (Exception, SystemExit) as error:
         report = failure(error)
         say(str(report["traceback"]) or str(error))
         line.send(report, {})
-    if status:
+    if status and not lost:
         linger(line)
     line.close()
     say(f"{options.name}: " + ("stopped" if status else "finished"))
