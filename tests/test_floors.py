@@ -14,7 +14,10 @@ FLOOR = {name: n for n, name in enumerate(ROWS)}  # files of a component, the lo
 STOREYS = [
     *(where(folder) for folder in COMPONENTS),
     *(f"components/shared{part}" for part in ("", "/domain", "/geometry", "/search")),
-    *(f"coupler/{part}" for part in ("coupling", "launch", "report", "run", "scene", "study")),
+    *(
+        f"coupler/{part}"
+        for part in ("chaos", "coupling", "launch", "report", "run", "scene", "study")
+    ),
     *("interfaces", "interfaces/lines", "interfaces/serving"),
 ]
 

@@ -30,7 +30,7 @@ FLOORS = {
         {"coupling"},
         {"measures"},
         {"scene"},
-        {"launch", "report", "reference"},
+        {"launch", "report", "reference", "chaos"},
         {"run"},
         {"study", "bench", "conform"},
         {"cli", "python"},

@@ -34,6 +34,13 @@ def seconds(text: str) -> float:
     return value
 
 
+def seed(text: str) -> int:
+    """Read a seed."""
+    if not text.isdecimal():
+        raise argparse.ArgumentTypeError(f"must be a whole number, 0 or more; found {text!r}")
+    return int(text)
+
+
 def add_scene(command: argparse.ArgumentParser, **more: Any) -> None:
     """Add a scene and everything that changes it."""
     command.add_argument("scene", help="a name from quintet list, or a TOML file", **more)

@@ -14,6 +14,7 @@ from quintet.coupler.cli.options import (
     add_settings,
     load_scene,
     seconds,
+    seed,
 )
 from quintet.interfaces.errors import LineError, SceneError
 from quintet.interfaces.serving.log_stream import outlive_readers
@@ -30,6 +31,10 @@ GRACE = (
     "(default: 0, which is about a second in all)"
 )
 TLS = "files with which it connects over tls (default: tls of the scene)"
+CHAOS = (
+    "disturb the run on purpose at places that this seed chooses: kill, stop and slow down "
+    "processes, delay, drop, duplicate and corrupt messages, fill the disk"
+)
 COMPILED = "scenes, or kinds, which stand for all scenes that use them (default: all scenes)"
 
 
@@ -42,6 +47,7 @@ def add_commands(command: Command) -> None:
     running.add_argument("--resume", type=Path, metavar="DIR", help=RESUME)
     running.add_argument("--elsewhere", action="append", default=[], metavar="NAME", help=ELSEWHERE)
     running.add_argument("--grace", type=seconds, default=0.0, metavar="SECONDS", help=GRACE)
+    running.add_argument("--chaos", type=seed, metavar="SEED", help=CHAOS)
     running.add_argument("--inside-mpi", action="store_true", help=argparse.SUPPRESS)
     joining = command("join", join, "start one component here and join it to a coupler elsewhere")
     add_scene(joining)
@@ -68,6 +74,7 @@ def run(options: argparse.Namespace) -> int:
     outlive_readers()
     scene, out, snapshot = _resumed(options) if options.resume else _begun(options)
     scene.elsewhere, scene.grace = set(options.elsewhere), options.grace
+    scene.chaos = options.chaos
     unknown = scene.elsewhere - set(scene.components)
     if unknown or (scene.elsewhere and scene.transport != "zenoh"):
         raise SceneError("--elsewhere needs components of the scene, and the transport zenoh.")

@@ -12,8 +12,9 @@ import re
 import shutil
 import sys
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 from quintet.interfaces.errors import DiskError, SceneError
 
@@ -30,6 +31,12 @@ REASONS = {
     errno.EFBIG: "allows no file so large",
     errno.EROFS: "may only be read",
 }
+
+
+class Writing:
+    """Told of every piece that is about to be written to a file of a run."""
+
+    begin: Callable[[Path], Any] = staticmethod(lambda path: None)  # may raise OSError
 
 
 def disk_error(path: Path, error: Exception, needed: int = 0) -> DiskError:
@@ -68,6 +75,7 @@ def disk_of(path: Path) -> Path:
 def reporting_disk(path: Path) -> Iterator[None]:
     """Convert an OSError during writing into a DiskError."""
     try:
+        Writing.begin(path)
         yield
     except OSError as error:
         raise disk_error(path, error) from error
@@ -129,12 +137,13 @@ def write_at_last(path: Path, content: str) -> Path:
     give_up_reserve(path.parent)
     part = path.with_name(path.name + PART)
     try:
-        with reporting_disk(path), removed_on_failure(part):
+        with removed_on_failure(part):
             with open(part, "r+b" if part.exists() else "wb") as file:
                 file.write(content.encode())
                 file.truncate()
             put_in_place(part, path)
-    except DiskError as error:
+    except OSError as cause:
+        error = disk_error(path, cause)
         elsewhere = Path(tempfile.mkdtemp(prefix="quintet-")) / path.name
         elsewhere.write_text(content)
         print(f"quintet: {error} It is kept as {elsewhere}.", file=sys.stderr, flush=True)

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import h5py
 
-from quintet.coupler.files.disk import disk_error
+from quintet.coupler.files.disk import Writing, disk_error
 
 OF_DATASET = 1 << 14  # bytes of HDF5's own, at most, that a piece adds to a data set
 OF_FILE = 1 << 16  # and to the file
@@ -35,6 +35,7 @@ def room(file: h5py.File, size: int) -> Iterator[None]:
     """Write a piece of so many bytes to a file, whole and flushed, or close the file without it."""
     handle, before, size = file.id.get_vfd_handle(), file.id.get_filesize(), size + OF_FILE
     try:
+        Writing.begin(Path(file.filename))
         os.posix_fallocate(handle, before, size)
         yield
         file.flush()

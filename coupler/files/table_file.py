@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-from quintet.coupler.files.disk import check_length, disk_error
+from quintet.coupler.files.disk import Writing, check_length, disk_error
 
 BATCH = 1 << 14  # characters that are kept back at most
 
@@ -52,6 +52,7 @@ class TableFile:
         assert self.path is not None
         at = self.size
         try:
+            Writing.begin(self.path)
             while data:
                 written = os.pwrite(self._file, data, at)
                 at, data = at + written, data[written:]

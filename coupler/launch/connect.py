@@ -15,6 +15,7 @@ from quintet.coupler.coupling.participant import (
 )
 from quintet.coupler.launch import stack
 from quintet.coupler.launch.acceptance import accept, probe_of, settings
+from quintet.coupler.launch.disturbance import UNDISTURBED, Disturbance
 from quintet.coupler.launch.mpi_job import write_processes
 from quintet.coupler.launch.process_probe import ProcessProbe
 from quintet.coupler.launch.watchdog import Watchdog
@@ -38,23 +39,27 @@ class Connection(Protocol):
         """What the user should know of the connections."""
 
 
-def connect(scene: Scene, folder: Path, watchdog: Watchdog) -> Connection:
+def connect(
+    scene: Scene, folder: Path, watchdog: Watchdog, disturbance: Disturbance = UNDISTURBED
+) -> Connection:
     """Start and join all components of a scene, over its transport; have them watched."""
     keep_freed_memory()
     if scene.transport == "memory":
-        return InMemory(scene, watchdog)
+        return InMemory(scene, watchdog, disturbance)
     if scene.transport == "mpi":
-        return OverMpi(scene, folder, watchdog)
+        return OverMpi(scene, folder, watchdog, disturbance)
     # Only the transport that a run uses is loaded: zenoh starts threads.
     from quintet.coupler.launch.over_zenoh import OverZenoh
 
-    return OverZenoh(scene, folder, watchdog)
+    return OverZenoh(scene, folder, watchdog, disturbance)
 
 
 class InMemory:
     """All components in the coupler's own process."""
 
-    def __init__(self, scene: Scene, watchdog: Watchdog) -> None:
+    def __init__(
+        self, scene: Scene, watchdog: Watchdog, disturbance: Disturbance = UNDISTURBED
+    ) -> None:
         # Only the transport that a run uses is loaded.
         from quintet.interfaces.lines.memory import MemoryLine
 
@@ -64,7 +69,8 @@ class InMemory:
         try:
             for name, plan in scene.components.items():
                 line = MemoryLine(run, name)
-                participant = self.participants[name] = Participant(name, line)
+                through = disturbance.line(name, line, list)
+                participant = self.participants[name] = Participant(name, through)
                 probe = ProcessProbe(name, os.getpid(), where=stack.of_main_thread)
                 self.watchdog.add(participant, probe, scene.patience(name))
                 began = time.perf_counter()
@@ -98,7 +104,9 @@ def _built(plan: ComponentPlan, header: dict[str, Any]) -> Component:
 class OverMpi:
     """One rank per component; this process is rank 0."""
 
-    def __init__(self, scene: Scene, folder: Path, watchdog: Watchdog) -> None:
+    def __init__(
+        self, scene: Scene, folder: Path, watchdog: Watchdog, disturbance: Disturbance = UNDISTURBED
+    ) -> None:
         # Only the transport that a run uses is loaded: mpi4py starts MPI.
         from quintet.interfaces.lines import mpi
 
@@ -111,8 +119,9 @@ class OverMpi:
         try:
             for name in scene.components:
                 first = scene.first_rank(name)
-                participant = Participant(name, mpi.MpiLine(run, "coupler", name, first))
+                line = mpi.MpiLine(run, "coupler", name, first)
                 probe = self.probes[name] = probe_of(scene, name, folder)
+                participant = Participant(name, disturbance.line(name, line, probe.pids))
                 self.watchdog.add(participant, probe, scene.patience(name))
                 hello = participant.await_hello(LONGEST_WAIT, lambda seconds: None)
                 self.participants[name] = participant

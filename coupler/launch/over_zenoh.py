@@ -11,6 +11,7 @@ from pathlib import Path
 from quintet.coupler.coupling.participant import LONGEST_WAIT, Participant, finish_all
 from quintet.coupler.launch.acceptance import accept, identify, log_of, probe_of
 from quintet.coupler.launch.component_process import ComponentProcess
+from quintet.coupler.launch.disturbance import UNDISTURBED, Disturbance
 from quintet.coupler.launch.mpi_job import exit_files, find_launcher, under_shell
 from quintet.coupler.launch.process_probe import ProcessProbe
 from quintet.coupler.launch.processes import GRACE, RUN, end_marked, start
@@ -26,7 +27,7 @@ from quintet.interfaces.lines.admission import Admission
 from quintet.interfaces.lines.endpoint import Security, free_port
 from quintet.interfaces.lines.foreign_messages import ForeignMessages
 from quintet.interfaces.lines.frame_codes import topic_of
-from quintet.interfaces.lines.transport import REPEAT
+from quintet.interfaces.lines.transport import REPEAT, WatchedLine
 from quintet.interfaces.lines.zenoh import Session, ZenohLine
 
 JOINING_BY_HAND = 3600.0  # s until a component says hello that somebody starts elsewhere
@@ -36,8 +37,11 @@ ABORTING = 0.2  # s for components to end by themselves when a run fails
 class OverZenoh:
     """One process per component, started here or joined by hand."""
 
-    def __init__(self, scene: Scene, folder: Path, watchdog: Watchdog) -> None:
+    def __init__(
+        self, scene: Scene, folder: Path, watchdog: Watchdog, disturbance: Disturbance = UNDISTURBED
+    ) -> None:
         self.scene, self.folder, self.watchdog = scene, folder, watchdog
+        self.disturbance = disturbance
         self.endpoint = scene.endpoint or f"tcp/127.0.0.1:{free_port()}"
         self.participants: dict[str, Participant] = {}
         self.probes: dict[str, ProcessProbe] = {}
@@ -86,7 +90,7 @@ class OverZenoh:
         if restarts.limit:
             return self._join_restartable(name, restarts)
         line = self._begin_process(name).line
-        self._watch(Participant(name, line), restarts)
+        self._watch(self._participant(name, line), restarts)
         return line.wait_for_partner
 
     def _join_restartable(self, name: str, restarts: Restarts) -> Callable[[float], None]:
@@ -98,10 +102,14 @@ class OverZenoh:
         line = RestartableLine(
             name, restarts, partial(self._begin_process, name), check_hello, self.folder
         )
-        participant = Participant(name, line)
+        participant = self._participant(name, line)
         line.on_replay, line.on_return = participant.wait_for_replay, participant.notes.append
         self._watch(participant, restarts)
         return line.wait_for_partner
+
+    def _participant(self, name: str, line: WatchedLine) -> Participant:
+        line = self.disturbance.line(name, line, lambda: self.probes[name].pids())
+        return Participant(name, line)
 
     def _watch(self, participant: Participant, restarts: Restarts) -> None:
         name = participant.name
@@ -122,6 +130,7 @@ class OverZenoh:
         line, mark = ZenohLine(session, self.run, name), secrets.token_hex(8)
         if self.scene.file.restarts:
             line.repeat_after = REPEAT
+        self.disturbance.wire(name, line)
         awaited = name in self.scene.elsewhere
         probe = self.probes[name] = probe_of(self.scene, name, awaited=awaited)
         if awaited:

@@ -60,7 +60,7 @@ class ProcessProbe:
     _times: tuple[float, float] = (0.0, 0.0)  # s, of its own and of its children
     _looked_at: float = 0.0
     _ended: bool = False
-    _stopped: int = 0  # readings that found it so, one after the other
+    _stopped_since: int = -1  # switches of its main thread as it was first found so; -1: it runs
     _killed_before: int = field(default_factory=killed_for_memory)
 
     def alive(self) -> bool:
@@ -116,13 +116,17 @@ class ProcessProbe:
         return ""
 
     def stopped(self) -> bool:
-        """Whether the process was stopped, and is not being debugged; asked again and again."""
-        try:
-            stopped = bool(self.pid) and psutil.Process(self.pid).status() == psutil.STATUS_STOPPED
-        except psutil.Error:
-            stopped = False
-        self._stopped = self._stopped + 1 if stopped else 0
-        return self._stopped > 1
+        """Whether the process was stopped, and is not being debugged; asked again and again.
+
+        It must not have run since it was first found so: one that is only slowed down goes on.
+        """
+        switches, before = -1, self._stopped_since
+        with contextlib.suppress(psutil.Error):
+            process = psutil.Process(self.pid) if self.pid else None
+            if process and process.status() == psutil.STATUS_STOPPED:
+                switches = sum(process.num_ctx_switches())
+        self._stopped_since = switches
+        return switches >= 0 and switches == before
 
     def begin(self) -> None:
         """Begin to find out what the process does: from now on."""

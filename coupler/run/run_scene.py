@@ -93,6 +93,7 @@ def _run(scene: Scene, folder: Path, snapshot: Path | None, own_process: bool, r
     if scene.transport == "mpi" and not rank:
         target = ["--resume", str(folder)] if snapshot else ["--out", str(folder)]
         target += ["--grace", str(scene.grace)] if scene.grace else []
+        target += ["--chaos", str(scene.chaos)] if scene.chaos is not None else []
         end = run_under_mpi(["run", *run_arguments(**scene.asked), *target], scene, folder)
         if end.cause:
             conclude_for_coupler(scene, folder, end.status, end.cause)

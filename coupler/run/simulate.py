@@ -32,6 +32,7 @@ from quintet.coupler.files.reached import Reached
 from quintet.coupler.files.run_files import LEDGER, RESULTS, SCENE
 from quintet.coupler.launch.companion import Companion, once_gone
 from quintet.coupler.launch.connect import Connection, connect
+from quintet.coupler.launch.disturbance import UNDISTURBED, Disturbance
 from quintet.coupler.launch.processes import RUN, OwnProcesses, end_marked, tail
 from quintet.coupler.launch.watchdog import Watchdog
 from quintet.coupler.run import results, snapshots
@@ -94,6 +95,7 @@ class ActiveRun:
         self.scene, self.folder, self.snapshot = scene, folder, snapshot
         self.stop, self.watchdog, self.clock = stop, watchdog, results.Clock()
         self.exchange = scene.exchange()
+        self.disturbance = disturbance_of(scene)
         if snapshot:
             snapshots.check_files(snapshot)
         size, lengths = snapshots.file_sizes(snapshot) if snapshot else (0, {})
@@ -131,9 +133,11 @@ class ActiveRun:
         if self.stop.leave and main:
             in_main_thread = self.watchdog.in_main_thread
             self._begin_watchdog_process() if in_main_thread else self._begin_companion()
+        self.writer.on_window = self.disturbance.noting(self.writer.on_window)
         self._start.show()
         self._warn_of_limits()
-        self._connection = connection = connect(scene, self.folder, self.watchdog)
+        connection = connect(scene, self.folder, self.watchdog, self.disturbance)
+        self._connection = connection
         self.participants, self.notes_of_lines = connection.participants, connection.notes
         self._coupling = coupling = assemble(
             scene.coupling, self.participants, self.exchange, self.ledger, self.logs, self.costs
@@ -195,6 +199,7 @@ class ActiveRun:
             if self._started:
                 self._started.end()
             self._start.close()
+            self.disturbance.close()
             writer, lost = self.writer, False
             if isinstance(error, KeyboardInterrupt) or isinstance(
                 self.watchdog.verdict, KeyboardInterrupt
@@ -204,8 +209,9 @@ class ActiveRun:
             elif isinstance(error, Exception):
                 error = of_disk(error, self.folder)
                 lost = isinstance(error, DiskError)
+                remark = self.disturbance.remark()
                 self.outcome |= refused(error, writer) or failed(
-                    error, self.scene, self.folder, writer
+                    error, self.scene, self.folder, writer, remark
                 )
                 self._suspect_coupling()
             if self._connection:
@@ -235,6 +241,16 @@ class ActiveRun:
             sys.stdout.flush()
             sys.stderr.flush()
             os._exit(status)
+
+
+def disturbance_of(scene: Scene) -> Disturbance:
+    """What disturbs a run, if anything is to."""
+    if scene.chaos is None:
+        return UNDISTURBED
+    # Only runs that are to be disturbed load it.
+    from quintet.coupler.chaos.chaos import Chaos
+
+    return Chaos(scene)
 
 
 def log_files(scene: Scene, folder: Path) -> dict[str, Path]:
@@ -281,12 +297,17 @@ def of_disk(error: Exception, folder: Path) -> Exception:
     return error
 
 
-def failed(error: Exception, scene: Scene, folder: Path, writer: OutputWriter) -> dict[str, Any]:
-    """Report a failure: component, window, cause, and the last lines of its log."""
+def failed(
+    error: Exception, scene: Scene, folder: Path, writer: OutputWriter, remark: str = ""
+) -> dict[str, Any]:
+    """Report a failure: component, window, cause with a remark, and the last lines of its log."""
     give_up_reserve(folder)  # what is said here may go to the same disk
     if not isinstance(error, ComponentFailed):
         trace = "" if isinstance(error, QuintetError) else traceback.format_exc()
         error = ComponentFailed("coupler", writer.done, str(error), trace)
+    if remark:
+        cause = f"{error.cause.removesuffix('.')}.{remark}"
+        error = ComponentFailed(error.component, error.window, cause, error.trace)
     lines = tail(folder / "log" / f"{error.component}.log")
     fault = results.fault(error, folder, lines)
     print(f"\nquintet: {error}", file=sys.stderr)
@@ -338,6 +359,7 @@ def conclude(run: ActiveRun) -> int:
         "notes": notes(run),
         "timing": results.timing(run.participants, run.clock(), run.costs),
         "advice": results.advise(scene, run.participants),
+        **run.disturbance.summary(),
     }
     if outcome["status"] == "done":
         snapshots.remove(snapshots.snapshots(folder))

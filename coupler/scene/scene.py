@@ -214,6 +214,7 @@ class Scene:
     asked: dict[str, Any] = field(default_factory=dict)  # what `read.load` was given
     elsewhere: set[str] = field(default_factory=set)  # components joined by hand
     grace: float = 0.0  # s more for the end of a window and a snapshot, once an end is asked for
+    chaos: int | None = None  # seed of the disturbances of the run, if it is to be disturbed
 
     @property
     def endpoint(self) -> str:

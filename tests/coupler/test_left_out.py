@@ -116,6 +116,7 @@ def test_the_coupler_of_several_processes_imports_no_solver(tmp_path):
     assert "quintet.interfaces.lines.memory" not in names
     restarts = {f"quintet.coupler.launch.{part}" for part in ("restartable_line", "order_log")}
     assert not restarts & names
+    assert not {name for name in names if name.startswith("quintet.coupler.chaos")}
 
 
 @pytest.fixture(scope="module")

@@ -1,0 +1,1 @@
+"""Disturbs a run on purpose, at places that a seed chooses."""
