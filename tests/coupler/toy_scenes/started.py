@@ -60,11 +60,14 @@ def same(one, other):
 class Started:
     """``quintet run`` of a scene, as a user starts it, in a session of its own."""
 
-    def __init__(self, scene, *arguments, out=None, within=()):
-        self.folder = out or scene.parent / "out"
+    def __init__(self, scene, *arguments, out=None, within=(), resumes=False):
+        self.scene, self.folder = scene, out or scene.parent / "out"
         self.before = set(os.listdir("/dev/shm"))
         self.mark = f"{MARK}={scene.parent}"
-        command = [*within, *self.command(scene), "--out", str(self.folder), *arguments]
+        start = [*self.command(scene), "--out"]
+        if resumes:
+            start = [sys.executable, "-m", "quintet.coupler.cli", "run", "--resume"]
+        command = [*within, *start, str(self.folder), *arguments]
         self.process = subprocess.Popen(
             command,
             stdout=subprocess.PIPE,
