@@ -17,6 +17,10 @@ from quintet.coupler.files.disk import Writing, disk_error
 
 OF_DATASET = 1 << 14  # bytes of HDF5's own, at most, that a piece adds to a data set
 OF_FILE = 1 << 16  # and to the file
+METADATA = 1 << 14  # bytes of a data set's own description that are kept in memory
+# Measured on noisy doubles: 200 MB/s and 0.97 of the size, against 60 MB/s and 0.89 of gzip 1,
+# and 1.3 GB/s unpacked. Forces of which four in five are zero shrink to 0.43.
+PACKED = {"shuffle": True, "compression": "lzf"}
 
 
 def create(path: Path | str, cache: int | None = None) -> h5py.File:
@@ -28,6 +32,26 @@ def create(path: Path | str, cache: int | None = None) -> h5py.File:
         return h5py.File(path, "w", locking=False, rdcc_nbytes=cache)
     except OSError as error:
         raise disk_error(Path(path), error) from error
+
+
+def bound_metadata(file: h5py.File) -> None:
+    """Keep no more of the lists of chunks in memory than appending to all data sets needs.
+
+    By default HDF5 keeps at least a megabyte of them, as on the disk, which take six in memory: the
+    memory of a run would grow for a hundred thousand windows.
+    """
+    count = 0
+
+    def add(_: str, entry: object) -> None:
+        nonlocal count
+        count += isinstance(entry, h5py.Dataset)
+
+    file.visititems(add)
+    config = file.id.get_mdc_config()
+    config.set_initial_size = True
+    config.initial_size = config.min_size = config.max_size = METADATA * max(4, count)
+    config.incr_mode = config.flash_incr_mode = config.decr_mode = 0
+    file.id.set_mdc_config(config)
 
 
 @contextlib.contextmanager

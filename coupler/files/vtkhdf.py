@@ -13,7 +13,7 @@ import h5py
 import numpy as np
 
 from quintet.coupler.files.disk import PART, removed_on_failure
-from quintet.coupler.files.hdf5 import create, room
+from quintet.coupler.files.hdf5 import bound_metadata, create, room
 from quintet.coupler.files.vtkhdf_reader import SCENE, UNITS, read_step, scene, times, units
 from quintet.interfaces.component import Array
 from quintet.interfaces.errors import PortError, SceneError
@@ -84,6 +84,7 @@ class VtkHdf:
         with room(self._file, _largest(arrays) + 2 * cells.nbytes):
             if not self._data:
                 self._begin(arrays, view.get("cells"))
+                bound_metadata(self._file)
             _require_points({k: array for k, array in arrays.items() if k not in self._cell_data})
             arrays = self._with_ranks(arrays)
             self._require_same(arrays)

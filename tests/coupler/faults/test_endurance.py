@@ -1,0 +1,51 @@
+"""A long run holds as much memory as a short one, loses no descriptor, and writes what it records.
+
+``python tests/coupler/faults/endurance.py`` draws the same.
+"""
+
+import pytest
+from endurance import FILES, endure, table
+
+MOST = {"coupler": 10.0}  # bytes a window in the second half of the windows
+MOST_OF_OTHERS = 2.0
+MOST_OF_SHORT = {"coupler": 2e6}  # bytes in the second half of 2000 windows: pools still fill
+SPARE = 2  # descriptors that are open for a moment: a snapshot, its folder
+
+
+def check_files_and_descriptors(samples, found):
+    for name, size in found["files"].items():
+        assert size < FILES[name], table(found)
+    processes = found["processes"]
+    for name, rows in samples.rows.items():
+        counts = [row[4] for row in rows if 0.05 * found["windows"] < row[0] < found["windows"]]
+        if name.rpartition(" ")[0] in processes and counts:
+            assert max(counts) <= min(counts) + SPARE, table(found)
+
+
+@pytest.mark.slow
+@pytest.mark.zenoh
+def test_two_thousand_windows_lose_no_descriptor_and_hold_no_memory(tmp_path):
+    samples, found = endure(tmp_path, 2000, "zenoh", restarts=True, interval=0.05)
+    assert {"coupler", "ping", "pong", "companion"} <= set(found["processes"])
+    for name, row in found["processes"].items():
+        assert row["growth"] < MOST_OF_SHORT.get(name, 2e5), table(found)
+    check_files_and_descriptors(samples, found)
+    assert found["files"]["recording.h5"] > 400.0, "it is recorded"
+
+
+RUNS = {
+    "zenoh": {},
+    "zenoh with restarts": {"restarts": True},
+    "zenoh without recording": {"record": False, "views": False},
+    "mpi": {},
+}
+
+
+@pytest.mark.full
+@pytest.mark.parametrize("case", RUNS)
+def test_two_hundred_thousand_windows_end_with_the_memory_of_half_as_many(tmp_path, case):
+    samples, found = endure(tmp_path, 200_000, case.split()[0], **RUNS[case])
+    print(table(found))
+    for name, row in found["processes"].items():
+        assert row["slope"] < MOST.get(name, MOST_OF_OTHERS), table(found)
+    check_files_and_descriptors(samples, found)
