@@ -12,15 +12,18 @@ The functions are those of the command line. Mistakes in a scene are raised as `
 failures of a run as `RunError`; both are `QuintetError`, as all that quintet raises on purpose.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from concurrent.futures import Executor
+
     from quintet.coupler.report.run import Run
     from quintet.coupler.scene.listing import Plan
     from quintet.coupler.scene.scene import Scene
+    from quintet.coupler.study.sweep import Sweep
     from quintet.interfaces.errors import QuintetError, RunError, SceneError
 
 __version__ = "0.2.0"
@@ -33,6 +36,7 @@ __all__ = [
     "load",
     "resume",
     "run",
+    "sweep",
 ]
 ERRORS = ("QuintetError", "RunError", "SceneError")
 
@@ -164,6 +168,57 @@ def check(
     checked = _scene(scene, preset, settings, swap, transport, imports)
     require_memory(checked)
     return Plan(checked)
+
+
+def sweep(
+    scene: str | PathLike[str],
+    over: Mapping[str, Iterable[Any]],
+    *,
+    preset: str = "",
+    settings: Overrides = None,
+    swap: Mapping[str, str] | None = None,
+    transport: str = "",
+    jobs: int = 2,
+    retry: int = 1,
+    out: str | PathLike[str] | None = None,
+    executor: "Executor | None" = None,
+) -> "Sweep":
+    """Run a scene for each combination of the values of some keys; see `run`.
+
+    Runs that are complete in the folder are not run again; called again, it does what is missing.
+
+    Parameters
+    ----------
+    over : mapping of dotted paths to lists of values
+        In SI units, as ``{"components.water.spacing": [0.02, 0.01]}``.
+    jobs : int
+        Runs at once, on this host.
+    retry : int
+        How often a run is repeated whose process was killed from outside.
+    out : path
+        Folder of all runs: new, empty, or of a former sweep; ``runs/NAME-sweep`` if not given.
+    executor : concurrent.futures.Executor
+        Does the runs in the place of `jobs` threads that start a process for each run. What it is
+        given can be pickled; its workers must see the folder, and have quintet installed.
+
+    Returns
+    -------
+    Sweep
+        Its `rows`: settings, status, values of the expectations and times of each run.
+
+    Raises
+    ------
+    SceneError
+        Combinations have mistakes, all of which are listed; nothing was started.
+    """
+    # Components import this package, and none needs the coupler: it is loaded on use.
+    from quintet.coupler.scene.overrides import assignments
+    from quintet.coupler.scene.sweep_axes import axes_of
+    from quintet.coupler.study.sweep import sweep as run_all
+
+    swaps = [f"{name}={kind}" for name, kind in (swap or {}).items()]
+    asked = (str(scene), preset, assignments(settings or {}), swaps, transport)
+    return run_all(asked, axes_of(over), Path(out) if out else None, jobs, retry, executor)
 
 
 def load(folder: str | PathLike[str]) -> "Run":

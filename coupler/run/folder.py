@@ -6,6 +6,7 @@ replaces them has passed all checks: until then they lie in a folder beside the 
 
 import contextlib
 import itertools
+import time
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -37,6 +38,11 @@ from quintet.interfaces.errors import DiskError, SceneError
 BEGUN = (LOCK, MARKER + PART)  # all that is there of a run that begins just now
 FORMER = "quintet-former"  # within the folder: the run that is being replaced
 SHOWN = 3  # foreign files named in a message
+SHARED = 10.0  # s for another process to begin a folder that both use
+
+
+class InUse(SceneError):
+    """The folder is locked by another run."""
 
 
 def files_of(scene: Scene) -> list[str]:
@@ -147,6 +153,31 @@ def begin_series(
     return begin(kind, name, files, folder if keep else out, force)
 
 
+def share(kind: str, scene: str, files: Iterable[str], out: Path | None) -> Path:
+    """Use a folder for a series of runs, as may others at the same time: each run has its lock."""
+    name, limit = f"{scene}-{kind}", time.monotonic() + SHARED
+    folder = (out or Path("runs") / name).resolve()
+    while not read_marker(folder):
+        try:
+            with begin(kind, name, files, folder):
+                pass
+        except SceneError as error:  # another may have begun it meanwhile, or begins it just now
+            begins = isinstance(error, InUse) and time.monotonic() < limit
+            if not (begins or read_marker(folder)):
+                raise
+            time.sleep(0.05)
+    check_ours(folder, kind)
+    require_no_links(folder)
+    return folder
+
+
+def wait_until_free(folder: Path, seconds: float) -> None:
+    """Wait for the end of a run in a folder, as of one whose starter was killed."""
+    if folder.is_dir():
+        with _locked(folder, seconds):
+            pass
+
+
 @contextlib.contextmanager
 def go_on(folder: Path, kind: str) -> Iterator[RunFolder]:
     """Use the folder of a former run again, as it is; lock it meanwhile."""
@@ -221,13 +252,13 @@ def _former(folder: Path, kind: str, force: bool) -> Marker | None:
 
 
 @contextlib.contextmanager
-def _locked(folder: Path) -> Iterator[None]:
+def _locked(folder: Path, seconds: float = 0.0) -> Iterator[None]:
     """Lock a folder; the lock of a process that died is free."""
-    lock = FileLock(folder / LOCK, timeout=0)
+    lock = FileLock(folder / LOCK, timeout=seconds)
     try:
         lock.acquire()
     except Timeout as error:
-        raise SceneError(
+        raise InUse(
             f"{folder}: another run is using it. Wait for its end, or name another folder."
         ) from error
     try:

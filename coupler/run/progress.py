@@ -134,7 +134,11 @@ class ProgressReport:
 
 def time_left(pace: Pace, end: float) -> str:
     """Wall time until the end of a run; "" while nobody can tell."""
-    seconds = pace.left(end) if pace.seconds else math.inf
+    return in_words(pace.left(end) if pace.seconds else math.inf)
+
+
+def in_words(seconds: float) -> str:
+    """Say how much wall time is left [s]; "" if it is not finite."""
     if not math.isfinite(seconds):
         return ""
     if seconds < 100.0:

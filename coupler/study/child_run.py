@@ -10,6 +10,7 @@ import os
 import signal
 import subprocess
 import time
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -18,7 +19,7 @@ from quintet.coupler.files.run_files import RUN_LOG as LOG
 from quintet.coupler.files.run_files import SCENE
 from quintet.coupler.launch.processes import PYTHON, tail
 from quintet.coupler.report.show import NAME, results
-from quintet.coupler.run.folder import begin, discard_former
+from quintet.coupler.run.folder import begin, check_ours, discard_former
 from quintet.coupler.run.results import BAD, machine
 from quintet.coupler.run.signals import StopRequest
 from quintet.coupler.scene.overrides import assignments, run_arguments
@@ -39,7 +40,7 @@ class ChildRun:
     settings: list[str]
     swaps: list[str]
     transport: str
-    stop: StopRequest
+    stop: Callable[[], bool]  # whether to end the run early
     force: bool = False  # replace former runs
 
     @classmethod
@@ -53,9 +54,23 @@ class ChildRun:
         """Run with these settings; return the results, of status stalled if it timed out."""
         with begin("run", folder.name, [LOG], folder, self.force):
             discard_former(folder)  # the scene and all its variants were checked
-        with open(folder / LOG, "wb") as log:
+        target = ["--out", str(folder), "--force"]
+        return self._start(self._command(settings, target), folder, "wb", seconds)
+
+    def resume(self, settings: dict[str, Any], folder: Path) -> Any:
+        """Go on with a run from its last snapshot; of status refused if it has none of use."""
+        check_ours(folder, "run")
+        command = self._command(settings, ["--resume", str(folder)])
+        return self._start(command, folder, "ab", FOREVER)
+
+    def _start(self, command: list[str], folder: Path, mode: str, seconds: float) -> Any:
+        """Run a command in a process of its own, its output in the log; return the results.
+
+        They have the exit status of the process, that of a signal negative, under `exit`.
+        """
+        with open(folder / LOG, mode) as log:
             process = subprocess.Popen(
-                self._command(settings, folder),
+                command,
                 stdin=subprocess.DEVNULL,
                 stdout=log,
                 stderr=log,
@@ -68,7 +83,7 @@ class ChildRun:
             with contextlib.suppress(ProcessLookupError):
                 process.kill()
             process.wait()
-        return _results(folder, process.returncode, stalled)
+        return {**_results(folder, process.returncode, stalled), "exit": process.returncode}
 
     def earlier(self, settings: dict[str, Any], folder: Path) -> Any:
         """Results of the same run, done in an earlier series; None if there are none.
@@ -90,11 +105,11 @@ class ChildRun:
     def _overrides(self, settings: dict[str, Any]) -> list[str]:
         return [*self.settings, *assignments(settings)]
 
-    def _command(self, settings: dict[str, Any], folder: Path) -> list[str]:
+    def _command(self, settings: dict[str, Any], target: list[str]) -> list[str]:
         overrides = self._overrides(settings)
         asked = run_arguments(self.scene, self.preset, overrides, self.swaps, self.transport)
         python = [*PYTHON, "-m", "quintet.coupler.cli"]
-        return [*python, "run", *asked, "--out", str(folder), "--force"]
+        return [*python, "run", *asked, *target]
 
     def _await(self, process: "subprocess.Popen[bytes]", seconds: float) -> bool:
         """Wait for the process to end; return whether it timed out."""

@@ -1,0 +1,71 @@
+"""What a sweep has to run: every combination of values, checked before anything starts."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from quintet.coupler.run.results import machine
+from quintet.coupler.run.run_scene import check_machine
+from quintet.coupler.scene.overrides import assignments
+from quintet.coupler.scene.read import load
+from quintet.coupler.scene.scene import Scene
+from quintet.coupler.scene.sweep_axes import Axis, combinations, label
+from quintet.coupler.study.run_hash import run_hash
+from quintet.coupler.study.sweep_run import Job
+from quintet.interfaces.errors import SceneError
+
+# Scene, preset, settings, swaps and transport, as on the command line.
+Asked = tuple[str, str, list[str], list[str], str]
+
+
+def plan(asked: Asked, axes: Sequence[Axis], jobs: int, retry: int) -> tuple[str, list[Job]]:
+    """Check every combination; return the scene's name and the runs, whose folder is unknown.
+
+    Raises
+    ------
+    SceneError
+        With every mistake, each with the combinations that it is in.
+    """
+    name, preset, settings, swaps, transport = asked
+    products = combinations(axes)
+    mistakes: dict[str, list[str]] = {}
+    labels: dict[str, str] = {}  # by hash
+    planned: list[Job] = []
+    scene_name, versions = "", machine()["versions"]
+    for combination in products:
+        words = [*settings, *assignments(combination)]
+        try:
+            scene = load(name, preset, words, swaps, transport)
+            _check(scene, jobs)
+        except SceneError as error:
+            for mistake in error.mistakes:
+                mistakes.setdefault(mistake, []).append(label(combination))
+            continue
+        digest, scene_name = run_hash(scene), scene.file.name
+        if digest in labels:
+            same = f"{labels[digest]} and {label(combination)}"
+            mistakes[f"sweep: {same} are the same run. Remove one of the values."] = []
+        labels[digest] = label(combination)
+        planned.append(Job(digest, Path(), asked, combination, scene.resolved, versions, retry))
+    if mistakes:
+        raise SceneError([_told(*entry, len(products)) for entry in mistakes.items()])
+    return scene_name, planned
+
+
+def _check(scene: Scene, jobs: int) -> None:
+    """Refuse what this machine lacks, and runs at once that would listen at one endpoint."""
+    check_machine(scene)
+    if scene.endpoint and jobs > 1:
+        raise SceneError(
+            f"scene.endpoint must be left out where runs are done at once; found {scene.endpoint}. "
+            "Remove it, or give --jobs 1."
+        )
+
+
+def _told(mistake: str, labels: list[str], count: int) -> str:
+    """Say in which combinations a mistake is."""
+    if not labels:
+        return mistake
+    if len(labels) == count and count > 1:
+        return f"{mistake} (in all {count} combinations)"
+    more = f" and {len(labels) - 1} more of {count} combinations" if len(labels) > 1 else ""
+    return f"{mistake} (with {labels[0]}{more})"
