@@ -7,13 +7,14 @@ its usual windows. A component that is built may compute for thirty times its pa
 nothing for its patience. A stopped process is ended at once: nothing goes on by itself there.
 """
 
+import contextlib
 import math
 import secrets
 import signal
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 from typing import Protocol
 
@@ -28,6 +29,7 @@ USUAL, EXTRA = 3.0, 5.0  # reported after 3 usual windows and 5 s
 DEAD = 0.3  # s until a death is reported; before, whoever waits for the component knows more
 ENDING, SAVING = 0.7, 1.1  # s to end a window, and to save, after an end was asked for
 OBEYING, AT_ONCE = 0.5, 0.15  # s for the thread that couples to carry out a verdict
+TURN = 1e-4  # s that this thread waits for the interpreter's lock while it looks
 BUILDING = 30.0  # times its patience may a component compute while it is built
 POKE = signal.SIGURG  # makes the main thread look; without a handler it does nothing
 
@@ -256,9 +258,10 @@ class Watchdog:
             probe.activity = "stopped"
             self.fail(component, f"stopped responding: {probe.described()}")
             return
-        component.read(passed)
-        if (component.waited > component.tell_at or component.is_over()) and self.acts():
-            self._tell_or_end(component)
+        with short_turns() if self.in_main_thread else contextlib.nullcontext():
+            component.read(passed)
+            if (component.waited > component.tell_at or component.is_over()) and self.acts():
+                self._tell_or_end(component)
 
     def _tell_or_end(self, component: Watched) -> None:
         calls = component.probe.where()
@@ -323,6 +326,21 @@ class Watchdog:
         ident = threading.main_thread().ident
         if self.in_main_thread and ident and signal.getsignal(POKE) is not signal.SIG_DFL:
             signal.pthread_kill(ident, POKE)
+
+
+@contextlib.contextmanager
+def short_turns() -> Iterator[None]:
+    """Look at files without long waits for the interpreter's lock.
+
+    Each of hundreds of looks gives the lock up. A solver in Python, in the main thread, takes it
+    and keeps it for the interpreter's switch interval, 5 ms: a round took seconds.
+    """
+    before = sys.getswitchinterval()
+    sys.setswitchinterval(min(TURN, before))
+    try:
+        yield
+    finally:
+        sys.setswitchinterval(before)
 
 
 def say(text: str, lines: list[str] | None = None) -> None:
