@@ -73,8 +73,14 @@ class WatchdogProcess:
         faulthandler.register(STACK_SIGNAL, file=self._stacks, all_threads=False)
         self._companion: Companion | None = Companion(self._watch)
         self._former = signal.getsignal(FAIL) or signal.SIG_DFL
+        self._exit = os._exit
+        os._exit = self._leave
         library = ctypes.CDLL(None)
         library.signal(FAIL, ctypes.cast(library._exit, ctypes.c_void_p))
+
+    def _leave(self, status: int) -> NoReturn:
+        """Leave a process as `os._exit`; that of a run that is not over has failed."""
+        self._exit(int(FAIL) if os.getpid() == self._run else status)
 
     def follow(self, participant: Participant) -> None:
         """Note from now on when the coupler waits for a component."""
@@ -107,7 +113,7 @@ class WatchdogProcess:
         if not self._companion:
             return
         self._companion.close()
-        self._companion = None
+        self._companion, os._exit = None, self._exit
         if threading.current_thread() is threading.main_thread():  # else the process is left now
             signal.signal(FAIL, self._former)
             faulthandler.unregister(STACK_SIGNAL)

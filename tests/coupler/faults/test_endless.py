@@ -80,7 +80,7 @@ def test_over_memory_a_death_without_a_word_is_written_down(faulty, tmp_path, by
     moment = tmp_path / "moment"
     pong = f'fails_at = 60\nfails_by = "{by}"\nmoment = "{moment}"'
     run = faulty("Faulty", "memory", pong, top="output.snapshots = 0.02", end=100.0)
-    assert run.wait() == (0 if by == "os._exit" else -signal.SIGKILL)
+    assert run.wait() == (3 if by == "os._exit" else -signal.SIGKILL)
     assert run.results["status"] == "failed" and "--resume" in run.results["resume"]
     assert (run.results["fault"]["component"], run.results["fault"]["window"]) == ("pong", 60)
     assert "pong failed in window 60: process" in run.err
