@@ -98,7 +98,8 @@ def _built(plan: ComponentPlan, header: dict[str, Any]) -> Component:
         raise SceneError(f"components.{plan.name}: {error}") from error
     except (Exception, SystemExit) as error:
         report = failure(error)
-        raise ComponentFailed(plan.name, 0, report["text"], report["traceback"]) from error
+        cause = f"{report['error']}: {report['text']}"
+        raise ComponentFailed(plan.name, 0, cause, report["traceback"]) from error
 
 
 class OverMpi:

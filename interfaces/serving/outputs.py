@@ -87,7 +87,18 @@ class Outputs:
                 f"{array.shape}. The number of items of a port must not change: let a field "
                 "`active` say which of them exist."
             )
+        self._check_rows(key, array)
         self.accepted[key] = array.dtype, array.shape
+
+    def _check_rows(self, key: str, array: Array) -> None:
+        """Check that all fields of a port have one row for each item, the first time too."""
+        port = key.partition(".")[0]
+        for other, (_, shape) in self.accepted.items():
+            if other.partition(".")[0] == port and shape[0] != len(array):
+                raise PortError(
+                    f"output {key} must have as many rows as {other}, {shape[0]}: one for each "
+                    f"item of the port; found shape {array.shape}. Correct give()."
+                )
 
     def add(self, outputs: Fields, taken: Fields, dt: float) -> None:
         """Add one step."""

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from quintet.interfaces.component import Component, Fields, outputs_of
-from quintet.interfaces.errors import LineError, OrderError, QuintetError, StepError
+from quintet.interfaces.errors import LineError, OrderError, PortError, QuintetError, StepError
 from quintet.interfaces.lines.message import Message, require_finite
 from quintet.interfaces.lines.transport import Line
 from quintet.interfaces.serving.inputs import Inputs
@@ -82,7 +82,7 @@ class Server:
             "save": self._save,
             "load": self._load,
             "view": self._view,
-            "conclude": lambda _: ({"warnings": _texts(self.component.final_warnings())}, {}),
+            "conclude": self._conclude,
             "finish": lambda _: ({"memory": peak_memory(), "cpu": 0.0}, {}),
         }
 
@@ -172,6 +172,15 @@ class Server:
         if warnings := self.component.warnings():
             answer["warnings"] = _texts(warnings)
         return answer, fields
+
+    def _conclude(self, _: Message) -> Answer:
+        warnings = self.component.final_warnings()
+        if not isinstance(warnings, Mapping):
+            raise PortError(
+                "final_warnings() must return texts by subject; found "
+                f"{type(warnings).__name__}. Return {{}} where there are none."
+            )
+        return {"warnings": _texts(warnings)}, {}
 
     def _notes(self) -> list[str]:
         """Notes of the component that were not yet told."""

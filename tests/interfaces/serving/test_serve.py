@@ -10,6 +10,7 @@ from quintet.interfaces.errors import MessageError, OrderError, PortError, StepE
 from quintet.interfaces.lines.memory import MemoryLine
 from quintet.interfaces.lines.message import Message
 from quintet.interfaces.ports import FORCE, POSITION, VELOCITY
+from quintet.interfaces.serving.outputs import Outputs
 from quintet.interfaces.serving.serve import Server, answer, divide
 
 MOVED = Port("foot", (POSITION, VELOCITY))
@@ -280,3 +281,19 @@ def test_field_units_and_centrings_come_from_a_closed_list():
         Field("f", (3,), "kN")
     with pytest.raises(PortError, match="field f: an impulse field must be in"):
         Field("f", (3,), "m", "impulse")
+
+
+def test_fields_of_a_port_have_one_row_for_each_item_from_the_start():
+    outputs = Outputs([Port("motion", (POSITION, VELOCITY))])
+    outputs.check({"motion.position": np.zeros((N, 3))})
+    words = r"motion.velocity must have as many rows as motion.position, 4: .* found shape \(2, 3\)"
+    with pytest.raises(PortError, match=words):
+        outputs.check({"motion.velocity": np.zeros((2, 3))})
+
+
+def test_warnings_that_are_no_texts_by_subject_are_refused(monkeypatch):
+    server = served([WINDOW])
+    server.handle(Message({"order": "prime"}))
+    monkeypatch.setattr(server.component, "final_warnings", lambda: None)
+    with pytest.raises(PortError, match=r"final_warnings\(\) must return .* found NoneType"):
+        server.handle(Message({"order": "conclude"}))
