@@ -215,6 +215,7 @@ class Participant:
         timing, header = self.timing, message.header
         self.stable = float(header["stable"])
         self.window += 1
+        timing.recent.append(took)  # trials too: they take as long as others
         if self.trial:
             return message
         timing.first = timing.first or took
@@ -223,7 +224,6 @@ class Participant:
         timing.cpu += float(header["cpu"])
         timing.steps += int(header["steps"])
         timing.windows += 1
-        timing.recent.append(took)
         self._note(message)
         return message
 

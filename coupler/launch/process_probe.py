@@ -132,6 +132,10 @@ class ProcessProbe:
         """Begin to find out what the process does: from now on."""
         self.activity, self._read_at = "", 0.0
 
+    def leave_out(self) -> None:
+        """Leave the time since the last reading out: telling its stack is no work of its own."""
+        self._read_at = 0.0
+
     def read(self) -> None:
         """Find out what the process did since the last reading, now and then."""
         now = time.monotonic()

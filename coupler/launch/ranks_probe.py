@@ -58,6 +58,12 @@ class RanksProbe(ProcessProbe):
         for rank in self.ranks:
             rank.begin()
 
+    def leave_out(self) -> None:
+        """See `ProcessProbe.leave_out`."""
+        ProcessProbe.leave_out(self)
+        for rank in self.ranks:
+            rank.leave_out()
+
     def read(self) -> None:
         """Find out what the ranks did since the last reading, now and then."""
         if not self.ranks:  # those of their launcher's children

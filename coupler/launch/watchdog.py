@@ -4,7 +4,8 @@ It decides; the thread that couples carries it out when it next looks, or is mad
 a component may take is never known, so that a false alarm is worse than a late component: nobody is
 ended who compiles kernels, or who has not kept the others waiting for its patience beyond three of
 its usual windows. A component that is built may compute for thirty times its patience, and may do
-nothing for its patience. A stopped process is ended at once: nothing goes on by itself there.
+nothing for its patience; it is reported once it has computed for its patience, or done nothing for
+some seconds. A stopped process is ended at once: nothing goes on by itself there.
 """
 
 import contextlib
@@ -26,6 +27,7 @@ from quintet.coupler.launch.restarts import Restarts
 INTERVAL = 0.05  # s between two rounds of all components
 LONGEST_ROUND = 1.0  # s; if more has passed, this process itself was stopped meanwhile
 USUAL, EXTRA = 3.0, 5.0  # reported after 3 usual windows and 5 s
+IDLE_FOR = 4.0  # s of doing nothing, while it is built, after which it is reported
 DEAD = 0.3  # s until a death is reported; before, whoever waits for the component knows more
 ENDING, SAVING = 0.7, 1.1  # s to end a window, and to save, after an end was asked for
 OBEYING, AT_ONCE = 0.5, 0.15  # s for the thread that couples to carry out a verdict
@@ -94,6 +96,11 @@ class Watched:
         if not built or self.waited > 0.2 * self.tell_at:
             self.probe.read()
         self.idle = self.idle + passed if not built and self.probe.activity == IDLE else 0.0
+
+    def is_late(self) -> bool:
+        """Whether the user should know of it now."""
+        stuck = self.idle > IDLE_FOR and not self.reported
+        return stuck or self.waited > self.tell_at or self.is_over()
 
     def is_over(self) -> bool:
         """Whether it has taken longer than it may."""
@@ -260,11 +267,12 @@ class Watchdog:
             return
         with short_turns() if self.in_main_thread else contextlib.nullcontext():
             component.read(passed)
-            if (component.waited > component.tell_at or component.is_over()) and self.acts():
+            if component.is_late() and self.acts():
                 self._tell_or_end(component)
 
     def _tell_or_end(self, component: Watched) -> None:
         calls = component.probe.where()
+        component.probe.leave_out()
         if component.participant.keeping_others_waiting.since != component.since:
             return  # it has answered
         participant, doing = component.participant, component.probe.described()

@@ -1,13 +1,14 @@
 """What the screen says of a component that takes long."""
 
 import os
+import sys
 import time
 
 import pytest
 
 from quintet.coupler.coupling.participant import Participant
 from quintet.coupler.launch.process_probe import ProcessProbe
-from quintet.coupler.launch.watchdog import Watchdog
+from quintet.coupler.launch.watchdog import Watchdog, Watched
 from quintet.coupler.run.signals import StopRequest
 from quintet.interfaces.lines.memory import MemoryLine
 
@@ -55,3 +56,18 @@ def test_of_kernels_that_compile_no_call_of_the_compiler_is_shown(told):
 def test_who_computes_is_shown_with_its_place_and_the_others_that_wait(told):
     said = told(["water", "cubes"], SOLVER)
     assert "quintet: water keeps the others waiting for " in said and SOLVER in said
+
+
+def test_over_memory_it_looks_without_long_waits_for_the_lock_of_python():
+    before, turns = sys.getswitchinterval(), []
+    watchdog = Watchdog(StopRequest(), in_main_thread=True)
+    participant = Participant("water", MemoryLine("", "water"))
+    participant.keeping_others_waiting.since = time.monotonic()
+
+    class Probe(ProcessProbe):
+        def read(self):
+            turns.append(sys.getswitchinterval())
+
+    watchdog.check_wait(Watched(participant, Probe("water", os.getpid()), 60.0), 0.1)
+    assert turns and max(turns) < 0.2 * before
+    assert sys.getswitchinterval() == before
