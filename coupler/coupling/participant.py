@@ -215,7 +215,10 @@ class Participant:
         timing, header = self.timing, message.header
         self.stable = float(header["stable"])
         self.window += 1
-        timing.recent.append(took)  # trials too: they take as long as others
+        if not self.trial and not timing.windows:
+            timing.recent.clear()
+        if not self.trial or not timing.windows:  # of pieces of windows, until a whole one is known
+            timing.recent.append(took)
         if self.trial:
             return message
         timing.first = timing.first or took

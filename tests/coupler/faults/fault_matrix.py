@@ -1,201 +1,197 @@
-"""Every fault over every transport: what a run then does, as a table.
+"""Every fault at every moment over every transport: what a run then does, as two tables.
 
-``python tests/coupler/faults/fault_matrix.py`` tries all of them and writes the table into
-coupler/README.md. The tests hold each to the same rules.
+``python tests/coupler/faults/fault_matrix.py`` tries all of them and writes the tables into
+coupler/README.md. What each cell did is kept in a file, so that a matrix that was ended goes on;
+cells that broke a rule are tried again. ``--fault``, ``--moment`` and ``--transport`` try a part.
+The tests hold each cell to the same rules.
 """
 
-import shutil
+import argparse
+import json
+import os
 import sys
 import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[3]
-TOYS = ROOT / "tests/coupler/toy_scenes"
-if __name__ == "__main__":
-    sys.path.insert(0, str(TOYS))
+sys.path.insert(0, str(ROOT / "tests/coupler/toy_scenes"))
 
-from full_disk import broken_rules, fill, make_disk, start  # noqa: E402
-from outcomes import ENDED, SOON, TOLD, Outcome, Reader, shortened  # noqa: E402
-from rank_faults import rank_rows  # noqa: E402
-from started import Started, write_scene  # noqa: E402
+import component_faults  # noqa: E402
+import disk_faults  # noqa: E402
+import rank_faults  # noqa: E402
+from outcomes import broken_rules, shortened  # noqa: E402
 
 TABLE = ROOT / "coupler/README.md"
 BEGIN, END = "<!-- faults -->", "<!-- end of faults -->"
-TRANSPORTS = ("memory", "zenoh", "mpi")
-AT = 60  # window in which it fails
-EARLIER = 0.2  # s, of its window before the fault, in which it is waited for too
+TRANSPORTS = component_faults.TRANSPORTS
+MOMENTS = tuple(component_faults.MOMENTS)
+LATER = component_faults.LATER
+ONE_RANK, DISK = "rank 1 of 2: ", "full disk: "
+PATIENCE = 8.0  # s
 
 
 @dataclass(frozen=True)
-class Fault:
-    """One way to fail.
+class Cell:
+    """One fault at one moment over one transport."""
 
-    `kind` is what becomes of the process: it says so itself, it is dead, stopped, or it hangs.
-    """
+    fault: str
+    moment: str
+    transport: str
 
-    name: str
-    kind: str
-    cause: str
-    transports: tuple[str, ...] = TRANSPORTS
+    @property
+    def key(self):
+        """Its name in the file of results."""
+        return f"{self.fault}, {self.moment}, {self.transport}"
 
-
-PROCESSES = ("zenoh", "mpi")
-HANGS = "stopped responding: kept the others waiting for"
-FAULTS = [
-    Fault("exception", "said", "ArithmeticError: asked to raise"),
-    Fault("sys.exit", "said", "SystemExit: asked Python to exit, with status 0"),
-    Fault("os._exit", "dead", "ended by itself with status 0", PROCESSES),
-    Fault("SIGKILL", "dead", "was killed by signal 9 (SIGKILL)", PROCESSES),
-    Fault("SIGSEGV", "dead", "was killed by signal 11 (SIGSEGV): its compiled code", PROCESSES),
-    Fault("SIGSTOP", "stopped", "stopped responding: process", PROCESSES),
-    Fault("deadlock", "hangs", HANGS),
-    Fault("endless loop", "hangs", HANGS),
-    Fault("compiled loop", "hangs", HANGS),
-    Fault("polling loop", "hangs", HANGS),
-    Fault("NaN", "said", "every number of out.number must be finite; item 0 is [nan nan nan]"),
-    Fault("wrong shape", "said", "output out.number must keep its shape (5, 3); found (2, 3)"),
-    Fault("impulse of wrong shape", "said", "output out.push must keep its shape (5, 3); found (1"),
-    Fault("complex", "said", "output out.number must be an array of real numbers; found complex"),
-    Fault("None", "said", "output out.push must be an array of real numbers; found NoneType"),
-    Fault("huge", "said", "output out.number must keep its shape (5, 3); found (250000000, 3)"),
-    Fault("out of memory", "said", "MemoryError: "),
-]
-CASES = [(one, transport) for one in FAULTS for transport in one.transports]
-WRITTEN = {  # on a full disk: what finds no room
-    "recording": "recording.h5",
-    "ledger": "ledger.csv",
-    "snapshot": "snapshot-",
-    "view": "pong.vtkhdf",
-}
+    def run(self, folder, slack):
+        """Try it; return what is kept of it."""
+        if self.fault.startswith(DISK):
+            name = self.fault.removeprefix(DISK)
+            broken, said, cause = disk_faults.full_disk(name, self.transport, folder)
+            return {"broken": broken, "told": None, "said": said, "cause": cause}
+        rank = self.fault.startswith(ONE_RANK)
+        module = rank_faults if rank else component_faults
+        name = self.fault.removeprefix(ONE_RANK)
+        fault = next(fault for fault in module.FAULTS if fault.name == name)
+        outcome = module.fail(fault, self.moment, self.transport, folder / "run", PATIENCE)
+        if rank:
+            broken = rank_faults.wrong(fault, self.moment, PATIENCE, outcome, slack)
+        else:
+            rules = component_faults.expected(fault, self.moment, self.transport, PATIENCE)
+            broken = broken_rules(rules, outcome, slack)
+        told = outcome.told if fault.kind == "hangs" else None
+        return {
+            "broken": broken,
+            "told": told,
+            "said": outcome.said,
+            "status": outcome.status,
+            "cause": outcome.cause,
+        }
 
 
-def fail(fault, transport, folder, patience):
-    """Run a scene of two components, one of which fails."""
-    folder.mkdir(parents=True, exist_ok=True)
-    shutil.copy(TOYS / "toy_faults.py", folder)
-    moment = folder / "moment"
-    pong = f'fails_at = {AT}\nfails_by = "{fault.name}"\nmoment = "{moment}"'
-    pong += f"\nchild = {str(transport != 'memory').lower()}"
-    scene = write_scene(folder, transport, 100.0, pong=pong)
-    text = scene.read_text().replace(
-        "[components.ping]", f"patience = {patience}\n[components.ping]"
-    )
-    scene.write_text("toy_faults:Faulty".join(text.rsplit("toys:Toy", 1)))
-    run = Started(scene)
-    reader = Reader(run)
-    status, ended, left = reader.wait(60.0 + patience)
-    lines = reader.lines
-    assert moment.is_file(), f"it came to no fault: {lines}"
-    at = float(moment.read_text())
-    told = reader.first("keeps the others waiting") or ended
-    said = reader.first("failed in window") or ended
-    err = "".join(line for _, line in lines)
-    there = (run.folder / "results.json").is_file()
-    results = run.results if there else {}
-    return Outcome(status, results, err, told - at, said - at, ended - at, left)
-
-
-def wrong(fault, transport, patience, found, slack=0.5):
-    """Rules that a run broke; a loaded machine may need some seconds more."""
-    broken = []
-
-    def must(true, rule):
-        if not true:
-            broken.append(rule)
-
-    must(found.status == 3, f"status 3; found {found.status}")
-    must(found.results.get("status") == "failed", "results.json must say failed")
-    blamed = found.results.get("fault", {})
-    must(blamed.get("component") == "pong", f"culprit pong; found {blamed.get('component')}")
-    must(blamed.get("window") == AT, f"window {AT}; found {blamed.get('window')}")
-    cause = blamed.get("cause", "")
-    must(fault.cause in cause, f"cause {fault.cause}; found {cause}")
-    must(f"quintet: pong failed in window {AT}: " in found.err, "the screen must say so")
-    must(not found.left, f"nothing left; found {found.left}")
-    if fault.kind == "hangs":
-        limit = min(TOLD, patience) + slack
-        first = min(found.told, found.said)
-        must(first < limit, f"told within {limit} s; found {first:.2f}")
-        limit = patience + 1.0 + slack
-        least = patience - EARLIER
-        must(least < found.said < limit, f"ended after {patience} s; found {found.said:.2f}")
-        must("in fail" in blamed.get("traceback", ""), "its stack")
-        must("toy_faults.py" in found.err, "its stack on the screen")
-    else:
-        must(found.said < SOON + slack, f"told within {SOON} s; found {found.said:.2f}")
-    late = found.took - found.said
-    must(late < ENDED + slack, f"over {ENDED} s later; found {late:.2f}")
-    return broken
-
-
-def cell(fault, transport, patience, found):
-    """What the table says of one run."""
-    if broken := wrong(fault, transport, patience, found):
-        return "; ".join(broken)
-    if fault.kind == "hangs":
-        return f"{found.told:.1f} s, {found.said:.1f} s"
-    return f"{found.said:.2f} s"
-
-
-def table(patience):
-    """Try everything; return the rows."""
-    rows = [
-        f"| fault | {' | '.join(TRANSPORTS)} | the cause, as reported |",
-        "|---" * (len(TRANSPORTS) + 2) + "|",
-    ]
-    for fault in FAULTS:
-        cells, cause = [], ""
+def cells():
+    """All cells, in the order of the tables."""
+    for fault, moment, transport in component_faults.CASES:
+        yield Cell(fault.name, moment, transport)
+    for fault, moment, transport in rank_faults.CASES:
+        yield Cell(ONE_RANK + fault.name, moment, transport)
+    for written in disk_faults.WRITTEN:
         for transport in TRANSPORTS:
-            if transport not in fault.transports:
-                cells.append("")
-                continue
-            with tempfile.TemporaryDirectory() as folder:
-                found = fail(fault, transport, Path(folder) / "run", patience)
-            cells.append(cell(fault, transport, patience, found))
-            if transport != "mpi" or not cause:
-                cause = found.results.get("fault", {}).get("cause", "")
-            print(fault.name, transport, cells[-1], flush=True)
-        rows.append(f"| {fault.name} | {' | '.join(cells)} | {shortened(cause)} |")
-    return [*rows, *rank_rows(patience), *disk_rows()]
+            yield Cell(DISK + written, LATER, transport)
 
 
-def full_disk(written, transport, folder):
-    """Run a scene whose disk becomes full; return the rules it broke, the time, and the cause."""
-    disk = make_disk("disk", folder)
-    try:
-        run, _, _ = start(folder, disk, transport, WRITTEN[written])
-        reader = Reader(run)
-        at = fill(run, disk, WRITTEN[written])
-        _, ended, _ = reader.wait(60.0)
-        run.err = "".join(line for _, line in reader.lines)
-        broken = broken_rules(run, disk, WRITTEN[written])
-        said = reader.first("it cannot be written") or ended
-        cause = next((line for _, line in reader.lines if "it cannot be written" in line), "")
-        return broken, said - at, cause.removeprefix("quintet: coupler failed in ").strip()
-    finally:
-        disk.close()
+class Kept:
+    """What cells did, in a file."""
+
+    def __init__(self, path, again):
+        self.path = path
+        self.cells = {} if again or not path.is_file() else json.loads(path.read_text())
+
+    def is_right(self, cell):
+        """Whether it was tried, and broke no rule."""
+        return cell.key in self.cells and not self.cells[cell.key]["broken"]
+
+    def add(self, cell, result):
+        """Keep what a cell did."""
+        self.cells[cell.key] = result
+        part = self.path.with_suffix(".part")
+        part.write_text(json.dumps(self.cells, indent=1))
+        part.replace(self.path)
 
 
-def disk_rows():
-    """Rows of the table for a disk that becomes full."""
-    for written in WRITTEN:
-        cells, causes = [], []
-        for transport in TRANSPORTS:
-            with tempfile.TemporaryDirectory() as folder:
-                broken, after, cause = full_disk(written, transport, Path(folder))
-            cells.append("; ".join(broken) or f"{after:.2f} s")
-            causes.append(cause.partition(": ")[2])
-            print(f"full disk, {written}", transport, cells[-1], flush=True)
-        yield f"| full disk, {written} | {' | '.join(cells)} | {shortened(causes[0])} |"
+def worst(results):
+    """The cell of several results: the rules that were broken, else the longest times."""
+    results = [result for result in results if result]
+    if broken := [rule for result in results for rule in result["broken"]]:
+        return "; ".join(dict.fromkeys(broken))
+    if not results:
+        return ""
+    said = max(result["said"] for result in results)
+    hangs = [result["told"] for result in results if result["told"] is not None]
+    return f"{max(0.0, *hangs, 0.0):.1f} s, {said:.1f} s" if hangs else f"{max(said, 0.0):.2f} s"
 
 
-def main(patience=8.0):
-    """Write the table."""
-    rows = "\n".join(table(patience))
+def by_transport(results):
+    """Rows of the first table: the later window, each transport, and the cause."""
+    yield f"| fault | {' | '.join(TRANSPORTS)} | the cause, as reported |"
+    yield "|---" * (len(TRANSPORTS) + 2) + "|"
+    for fault in dict.fromkeys(cell.fault for cell in cells()):
+        row = [results.get(Cell(fault, LATER, transport).key) for transport in TRANSPORTS]
+        causes = [result["cause"] for result in row[1:] if result]
+        cause = shortened(causes[0] if causes else "").replace(os.uname().nodename, "HOST")
+        yield f"| {fault} | {' | '.join(worst([result]) for result in row)} | {cause} |"
+
+
+def by_moment(results):
+    """Rows of the second table: each moment, the worst of the transports."""
+    yield f"| fault | {' | '.join(MOMENTS)} |"
+    yield "|---" * (len(MOMENTS) + 1) + "|"
+    for fault in dict.fromkeys(cell.fault for cell in cells()):
+        if fault.startswith(DISK):
+            continue
+        rows = (
+            [results.get(Cell(fault, moment, transport).key) for transport in TRANSPORTS]
+            for moment in MOMENTS
+        )
+        yield f"| {fault} | {' | '.join(map(worst, rows))} |"
+
+
+def write_tables(results):
+    """Write both tables into the documentation."""
+    rows = "\n".join([*by_transport(results), "", *by_moment(results)])
     before, _, rest = TABLE.read_text().partition(BEGIN)
     TABLE.write_text(f"{before}{BEGIN}\n{rows}\n{END}{rest.partition(END)[2]}")
 
 
+def parsed(arguments):
+    """Options of the command."""
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser.add_argument("--fault", action="append", help="try this fault only; may be repeated")
+    parser.add_argument("--moment", action="append", choices=MOMENTS, help="so a moment")
+    parser.add_argument("--transport", action="append", choices=TRANSPORTS, help="so a transport")
+    parser.add_argument("--cells", type=Path, default=ROOT / "build/fault_cells.json",
+                        metavar="FILE", help="keep there what cells did")  # fmt: skip
+    parser.add_argument("--again", action="store_true", help="forget what was kept")
+    parser.add_argument("--slack", type=float, default=0.5, metavar="SECONDS",
+                        help="that a loaded machine may need more than the rules say")  # fmt: skip
+    options = parser.parse_args(arguments)
+    names = {cell.fault for cell in cells()}
+    if unknown := set(options.fault or ()) - names:
+        parser.error(f"--fault must be of {', '.join(sorted(names))}; found {min(unknown)}")
+    return options
+
+
+def main(arguments=None):
+    """Try all cells that were asked for and are not kept; write the tables once none is missing."""
+    options = parsed(arguments)
+    options.cells.parent.mkdir(parents=True, exist_ok=True)
+    kept = Kept(options.cells, options.again)
+    for cell in cells():
+        asked = (
+            (options.fault, cell.fault),
+            (options.moment, cell.moment),
+            (options.transport, cell.transport),
+        )
+        if kept.is_right(cell) or any(names and name not in names for names, name in asked):
+            continue
+        with tempfile.TemporaryDirectory() as folder:
+            try:
+                result = cell.run(Path(folder), options.slack)
+            except Exception as error:  # so that the others are tried
+                broken = [f"{type(error).__name__}: {error}"]
+                result = {"broken": broken, "told": None, "said": 0.0, "cause": ""}
+        kept.add(cell, result)
+        print(f"{cell.key}: {worst([result])}", flush=True)
+    missing = [cell.key for cell in cells() if cell.key not in kept.cells]
+    wrong = [cell.key for cell in cells() if cell.key in kept.cells and not kept.is_right(cell)]
+    if missing:
+        print(f"{len(missing)} cells are missing: the tables are not written")
+    else:
+        write_tables(kept.cells)
+    print("\n".join([f"{len(wrong)} cells broke a rule", *wrong]))
+    return 1 if wrong else 0
+
+
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

@@ -23,16 +23,16 @@ def check_build(run, activity, line):
 
 @pytest.mark.parametrize("transport", OVER)
 def test_a_build_that_does_nothing_ends_the_run_after_its_patience(faulty, transport):
-    check_build(_hangs(faulty, "sleeps", transport, 2.0), "sleeping", "toy_faults.py")
+    check_build(_hangs(faulty, "sleeps", transport, 2.0), "sleeping", "toy_waits.py")
 
 
 @pytest.mark.parametrize("transport", ["memory", ZENOH])
 def test_a_build_may_compute_for_thirty_times_its_patience(faulty, transport):
-    check_build(_hangs(faulty, "computes", transport, 0.1), "computing", "toy_faults.py")
+    check_build(_hangs(faulty, "computes", transport, 0.1), "computing", "toy_waits.py")
 
 
 def test_over_memory_a_build_that_holds_the_lock_of_python_ends(faulty):
-    check_build(_hangs(faulty, "locks", "memory", 2.0), "sleeping", "toy_faults.py")
+    check_build(_hangs(faulty, "locks", "memory", 2.0), "sleeping", "hold_the_lock")
 
 
 def test_over_memory_a_thread_that_hangs_at_exit_keeps_the_status(faulty):

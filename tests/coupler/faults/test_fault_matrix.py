@@ -1,45 +1,56 @@
 """A run with a fault ends in time, says who, when and why, and leaves nothing behind."""
 
 import pytest
-from fault_matrix import CASES, fail, wrong
+from component_faults import BY_NAME, CASES, LATER, expected, fail
+from outcomes import broken_rules
 
-# One case of each class, each fault once.
-DEFAULT = {
-    "exception": "mpi",
-    "sys.exit": "memory",
-    "os._exit": "zenoh",
-    "SIGKILL": "mpi",
-    "SIGSTOP": "mpi",
-    "deadlock": "memory",
-    "endless loop": "zenoh",
-    "compiled loop": "memory",
-    "polling loop": "mpi",
-    "NaN": "zenoh",
-    "wrong shape": "memory",
-    "out of memory": "zenoh",
-    "SIGSEGV": "mpi",
-    "impulse of wrong shape": "memory",
-    "complex": "zenoh",
-    "None": "mpi",
-    "huge": "zenoh",
-}
+# One case of each class, each fault once; each moment beside the later window once or more.
+DEFAULT = [
+    ("exception", LATER, "mpi"),
+    ("sys.exit", LATER, "memory"),
+    ("os._exit", LATER, "zenoh"),
+    ("SIGKILL", "finish", "mpi"),
+    ("SIGSTOP", "give", "mpi"),
+    ("deadlock", LATER, "memory"),
+    ("endless loop", LATER, "zenoh"),
+    ("compiled loop", LATER, "memory"),
+    ("polling loop", LATER, "mpi"),
+    ("NaN", LATER, "zenoh"),
+    ("wrong shape", "first window", "memory"),
+    ("out of memory", LATER, "zenoh"),
+    ("SIGSEGV", "build", "mpi"),
+    ("impulse of wrong shape", LATER, "memory"),
+    ("complex", LATER, "zenoh"),
+    ("None", "finish", "mpi"),
+    ("huge", LATER, "zenoh"),
+    ("disk full", "build", "memory"),
+    ("link cut", LATER, "zenoh"),
+]
 LOADED = 3.0  # s that a loaded machine may add
-IDS = [f"{fault.name}, {transport}" for fault, transport in CASES]
-SHORT = [(fault, transport) for fault, transport in CASES if DEFAULT[fault.name] == transport]
+MARKS = {"memory": (), "zenoh": pytest.mark.zenoh, "mpi": pytest.mark.mpi}
 
 
-@pytest.mark.parametrize(
-    ("fault", "transport"), SHORT, ids=[f"{fault.name}, {over}" for fault, over in SHORT]
-)
-def test_a_fault_ends_the_run_with_a_report(tmp_path, fault, transport):
-    found = fail(fault, transport, tmp_path, 2.0)
-    assert wrong(fault, transport, 2.0, found, LOADED) == []
+def cases(chosen):
+    """Parameters of a test."""
+    return [
+        pytest.param(fault, moment, over, id=f"{fault.name}, {moment}, {over}", marks=MARKS[over])
+        for fault, moment, over in chosen
+    ]
+
+
+SHORT = cases((BY_NAME[name], moment, transport) for name, moment, transport in DEFAULT)
+
+
+@pytest.mark.parametrize(("fault", "moment", "transport"), SHORT)
+def test_a_fault_ends_the_run_with_a_report(tmp_path, fault, moment, transport):
+    outcome = fail(fault, moment, transport, tmp_path, 2.0)
+    assert broken_rules(expected(fault, moment, transport, 2.0), outcome, LOADED) == []
 
 
 @pytest.mark.full
-@pytest.mark.parametrize(("fault", "transport"), CASES, ids=IDS)
-def test_a_hang_is_told_before_it_is_ended(tmp_path, fault, transport):
-    found = fail(fault, transport, tmp_path, 9.0)
-    assert wrong(fault, transport, 9.0, found) == []
-    if fault.kind == "hangs":
-        assert found.told < 7.0 < 9.0 < found.said
+@pytest.mark.parametrize(("fault", "moment", "transport"), cases(CASES))
+def test_every_fault_at_every_moment(tmp_path, fault, moment, transport):
+    outcome = fail(fault, moment, transport, tmp_path, 9.0)
+    assert broken_rules(expected(fault, moment, transport, 9.0), outcome) == []
+    if fault.kind == "hangs" and moment != "build":
+        assert outcome.told < 7.0 < 9.0 < outcome.said

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from chain_scene import write
 from started import TOYS, Started, same, write_scene
-from toy_deaths import SLEEPS
+from toy_faults import OUTLIVES
 
 from quintet.coupler.cli import main
 
@@ -20,7 +20,7 @@ MOMENTS = {
     "later window": ("step", 121),
     "between": ("between", 121),
     "snapshot": ("save", 79),
-    "end": ("end", 0),
+    "end": ("finish", 0),
 }
 
 
@@ -34,11 +34,14 @@ def mortal(tmp_path_factory):
 
     def start(pong="", restarts=2, ping="", arguments=()):
         folder = tmp_path_factory.mktemp("run")
-        for name in ("toy_deaths.py", "toy_ranks.py"):
-            shutil.copy(TOYS.with_name(name), folder)
-        keys = f'substeps = 2\ndeaths = "{folder / "deaths"}"\n{pong}'
+        shutil.copy(TOYS.with_name("toy_faults.py"), folder)
+        keys = f'substeps = 2\nmoment = "{folder / "deaths"}"\n{pong}'
+        if "fails_by" not in pong:
+            keys += '\nfails_by = "SIGKILL"'
+        if "times" not in pong:
+            keys += "\ntimes = 1"
         scene = write_scene(folder, "zenoh", 0.1, ping, keys)
-        text = "toy_deaths:Mortal".join(scene.read_text().rsplit("toys:Toy", 1))
+        text = "toy_faults:Faulty".join(scene.read_text().rsplit("toys:Toy", 1))
         scene.write_text(f"restarts = {restarts}\n{text}")
         started.append(Started(scene, *arguments))
         return started[-1]
@@ -73,8 +76,8 @@ def check_restarted(run, times=1):
 
 def check_killed(mortal, undisturbed, moment, scheme):
     """A run of a scheme with a death at a moment has the bits of one without."""
-    dies_in, dies_at = MOMENTS[moment]
-    pong = f'dies_in = "{dies_in}"\ndies_at = {dies_at}'
+    fails_in, fails_at = MOMENTS[moment]
+    pong = f'fails_in = "{fails_in}"\nfails_at = {fails_at}'
     arguments = ("--set", f'scheme="{scheme}"', *SNAPSHOTS)
     run = mortal(pong, ping="pause = 2e-3", arguments=arguments)
     (note,) = check_restarted(run)
@@ -103,7 +106,7 @@ def test_windows_that_are_stepped_at_once_or_repeated_are_taken_up(
 
 def test_a_process_that_ends_itself_or_stands_still_is_replaced(mortal, undisturbed):
     for cause in ("os._exit", "SIGSTOP"):
-        pong = f'dies_in = "step"\ndies_at = 21\ndies_by = "{cause}"'
+        pong = f'fails_in = "step"\nfails_at = 21\nfails_by = "{cause}"'
         run = mortal(pong, arguments=SNAPSHOTS)
         check_restarted(run)
         assert ("stopped responding" in run.err) == (cause == "SIGSTOP")
@@ -111,17 +114,17 @@ def test_a_process_that_ends_itself_or_stands_still_is_replaced(mortal, undistur
 
 
 def test_what_a_process_has_started_ends_with_it(mortal):
-    run = mortal('child = true\ndies_in = "step"\ndies_at = 21', ping="pause = 0.02")
+    run = mortal('child = true\nfails_in = "step"\nfails_at = 21', ping="pause = 0.02")
     log = run.folder / "log" / "pong.log"
     run.wait_until(lambda: log.is_file() and log.read_text().count("step 50") == 1)
     commands = [Path(f"/proc/{pid}/cmdline").read_bytes() for pid in run.processes()]
-    assert sum(SLEEPS.encode() in command for command in commands) == 1
+    assert sum(OUTLIVES.encode() in command for command in commands) == 1
     check_restarted(run)
 
 
 @pytest.mark.slow
 def test_a_replay_that_takes_longer_than_the_patience_is_no_fault(mortal):
-    pong = 'pause = 0.2\ndies_in = "later"\ndies_at = 14'
+    pong = 'pause = 0.2\nfails_in = "later"\nfails_at = 14'
     run = mortal(pong, arguments=("--set", "patience=1.5", "--set", "end=0.03"))
     (note,) = check_restarted(run)
     seconds = float(re.search(r"after ([\d.]+) s", note)[1])
@@ -129,14 +132,14 @@ def test_a_replay_that_takes_longer_than_the_patience_is_no_fault(mortal):
 
 
 def test_what_came_before_the_last_state_is_not_repeated(mortal):
-    run = mortal('pause = 0.05\ndies_in = "step"\ndies_at = 161', arguments=("--set", "end=0.09"))
+    run = mortal('pause = 0.05\nfails_in = "step"\nfails_at = 161', arguments=("--set", "end=0.09"))
     (note,) = check_restarted(run)
     assert int(re.search(r"repeated (\d+) window", note)[1]) < 75
     assert not list(run.folder.glob("snapshot-*.h5"))
 
 
 def test_a_component_that_dies_too_often_ends_the_run(mortal):
-    run = mortal('dies_in = "step"\ndies_at = 21\ntimes = 3', restarts=2)
+    run = mortal('fails_in = "step"\nfails_at = 21\ntimes = 3', restarts=2)
     assert run.wait() == 3 and not run.left_processes()
     fault = run.results["fault"]
     assert fault["component"] == "pong" and fault["window"] == 10
@@ -146,36 +149,35 @@ def test_a_component_that_dies_too_often_ends_the_run(mortal):
 
 @pytest.mark.parametrize("cause", ["exception", "NaN"])
 def test_what_would_occur_again_is_no_death(mortal, cause):
-    run = mortal(f'dies_in = "step"\ndies_at = 21\ndies_by = "{cause}"')
+    run = mortal(f'fails_in = "step"\nfails_at = 21\nfails_by = "{cause}"')
     assert run.wait() == 3
     words = {"exception": "asked to raise", "NaN": "must be finite"}[cause]
     assert words in run.results["fault"]["cause"] and "started again" not in run.err
 
 
 def test_a_process_that_does_not_repeat_the_same_bits_ends_the_run(mortal):
-    run = mortal('dies_in = "step"\ndies_at = 21\ndiffers = true')
+    run = mortal('fails_in = "step"\nfails_at = 21\ndiffers = true')
     assert run.wait() == 3 and not run.left_processes()
     cause = run.results["fault"]["cause"]
     assert DIED in cause and "order advance: out.number has other bits" in cause
 
 
 def test_without_restarts_a_death_ends_the_run_as_ever(mortal):
-    run = mortal('dies_in = "step"\ndies_at = 21', restarts=0)
+    run = mortal('fails_in = "step"\nfails_at = 21', restarts=0)
     assert run.wait() == 3
     assert run.results["fault"]["cause"].endswith(DIED) and "started again" not in run.err
 
 
 @pytest.mark.mpi
-@pytest.mark.parametrize(("dies_in", "dies_at"), [("build", 0), ("step", 121)])
-def test_a_component_of_which_a_rank_dies_takes_up_its_work(tmp_path, dies_in, dies_at):
-    keys = f'deaths = "{tmp_path / "deaths"}"\ndies_at = {dies_at}\ndies_in = '
+@pytest.mark.parametrize(("fails_in", "fails_at"), [("build", 0), ("after", 121)])
+def test_a_component_of_which_a_rank_dies_takes_up_its_work(tmp_path, fails_in, fails_at):
+    keys = f'moment = "{tmp_path / "deaths"}"\nfails_by = "SIGKILL"\ntimes = 1\n'
+    keys += f"fails_at = {fails_at}\nfails_in = "
     runs = []
-    for name, moment in (("killed", dies_in), ("alone", "never")):
+    for name, moment in (("killed", fails_in), ("alone", "never")):
         folder = tmp_path / name
-        kind = "toy_deaths:MortalChain"
+        kind = "toy_rank_faults:FaultyChain"
         scene = write(folder, "zenoh", 2, keys=f'{keys}"{moment}"', kind=kind, patience=30.0)
-        for toy in ("toy_deaths.py", "toys.py"):
-            shutil.copy(TOYS.with_name(toy), folder)
         runs.append(Started(scene, "--set", f"restarts={int(name == 'killed')}"))
         assert runs[-1].wait() == 0, runs[-1].err
         assert not runs[-1].left_processes() and not runs[-1].left_in_shared_memory()

@@ -26,7 +26,7 @@ def check_waiting(run, by, seconds):
     said = run.err.partition("quintet: pong keeps the others waiting for ")[2]
     assert f"in window {window}" in said and DOES[by] in said
     if by != "disk":  # there the system does not let it answer
-        assert "toy_faults.py" in said
+        assert "toy_waits.py" in said
     assert "quintet: pong goes on after " in said
     assert not run.left_processes() and not run.left_in_shared_memory()
 

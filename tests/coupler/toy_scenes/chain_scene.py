@@ -3,7 +3,8 @@
 import shutil
 from pathlib import Path
 
-TOYS = Path(__file__).with_name("toy_ranks.py"), Path(__file__).with_name("toy_rank_faults.py")
+NAMES = ("toys.py", "toy_ranks.py", "toy_faults.py", "toy_rank_faults.py")
+TOYS = [Path(__file__).with_name(name) for name in NAMES]
 CHAIN = "toy_ranks:Chain"
 SCENE = """
 name = "chain"

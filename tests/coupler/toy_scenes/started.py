@@ -10,6 +10,8 @@ import sys
 import time
 from pathlib import Path
 
+from shared_memory import SharedFiles
+
 from quintet.coupler.files import vtkhdf_reader
 from quintet.coupler.report.diff import compare
 
@@ -62,7 +64,6 @@ class Started:
 
     def __init__(self, scene, *arguments, out=None, within=(), resumes=False):
         self.scene, self.folder = scene, out or scene.parent / "out"
-        self.before = set(os.listdir("/dev/shm"))
         self.mark = f"{MARK}={scene.parent}"
         start = [*self.command(scene), "--out"]
         if resumes:
@@ -76,6 +77,7 @@ class Started:
             start_new_session=True,
             env={**os.environ, MARK: str(scene.parent)},
         )
+        self.shared = SharedFiles(self.processes, lambda: self.process.poll() is not None)
         self.out = self.err = ""
 
     @staticmethod
@@ -137,21 +139,8 @@ class Started:
         return int(re.search(r"process (\d+)", text)[1])
 
     def left_in_shared_memory(self, seconds=3.0):
-        """Files that came while it ran, and that no process uses any more, nor will soon delete."""
-        limit = time.monotonic() + seconds
-        while (left := self._unused_in_shared_memory()) and time.monotonic() < limit:
-            time.sleep(0.2)
-        return left
-
-    def _unused_in_shared_memory(self):
-        new = set(os.listdir("/dev/shm")) - self.before
-        used = ""
-        for maps in Path("/proc").glob("[0-9]*/maps"):
-            try:
-                used += maps.read_text()
-            except OSError:
-                continue
-        return {name for name in new if f"/dev/shm/{name}" not in used}
+        """Files of this run that no process uses any more, nor will soon delete."""
+        return self.shared.left(seconds)
 
     @property
     def results(self):

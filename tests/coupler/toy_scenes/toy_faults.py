@@ -1,7 +1,7 @@
-"""A component with every fault that a solver may have, and one that lets others wait in earnest."""
+"""Every fault that a solver may have, and a component that has one at a moment of its run."""
 
-import atexit
 import ctypes
+import gc
 import os
 import resource
 import signal
@@ -9,17 +9,26 @@ import subprocess
 import sys
 import threading
 import time
-from typing import Literal
+from pathlib import Path
+from typing import Literal, get_args
 
 import numpy as np
 from toys import Toy
 
 from quintet.interfaces.params import Count, parameters
 
+Cause = Literal[
+    "exception", "sys.exit", "os._exit", "SIGKILL", "SIGSEGV", "SIGSTOP", "deadlock",
+    "endless loop", "compiled loop", "locked loop", "polling loop", "NaN", "wrong shape",
+    "impulse of wrong shape", "complex", "None", "huge", "out of memory", "disk full", "link cut",
+]  # fmt: skip
+# `step`: in step `fails_at`; `give`, `save`: after that step; `between`: 1 ms after its outputs;
+# `later`: so many steps after it was saved last; `finish`: when its last warnings are asked for.
+Moment = Literal["never", "build", "step", "give", "between", "save", "later", "finish"]
+CAUSES = get_args(Cause)
 SPARE = 1 << 28  # bytes that are left when memory runs out
 LOCK = ctypes.create_string_buffer(64)  # a mutex of the C library
-BUSY = "import time\nend = time.time() + {}\nwhile time.time() < end: pass"
-OPENS = "import time; time.sleep({}); open('pipe', 'w')"
+SOON = 1e-3  # s after an answer, while the partner still steps
 OUTLIVES = "import os, time\nos.setsid()\ntime.sleep(600)"
 # An orphan in a session of its own, without the environment of whoever started it.
 SLEEPS = "import time; time.sleep(601)"
@@ -29,89 +38,52 @@ subprocess.Popen([sys.executable, "-c", "{SLEEPS}"], env={{}}, start_new_session
 """
 
 
-class Faulty(Toy):
-    """Fails in one of its steps, as it is told."""
-
-    @parameters
-    class Params:
-        items: Count = 5
-        pause: float = 0.0
-        substeps: Count = 1
-        seen: bool = False
-        talks: bool = False
-        fails_at: int = -1
-        fails_by: Literal[
-            "exception", "sys.exit", "os._exit", "SIGKILL", "SIGSTOP", "deadlock", "endless loop",
-            "compiled loop", "polling loop", "NaN", "wrong shape", "out of memory", "SIGSEGV",
-            "impulse of wrong shape", "complex", "None", "huge",
-        ] = "exception"  # fmt: skip
-        moment: str = ""  # file for the time of the failure
-        child: bool = False  # whether it has a child process, in a session of its own
-        orphan: bool = False  # whether it has started a process whose parent has ended
-
-    def __init__(self, params):
-        super().__init__(params)
-        self.odd = {}  # what it gives in place of its fields
-        self.endless = compiled() if params.fails_by == "compiled loop" else None
-        if params.child:
-            subprocess.Popen([sys.executable, "-c", OUTLIVES])
-        if params.orphan:
-            subprocess.run([sys.executable, "-c", ORPHANED], check=True)
-
-    def fail(self):
-        with open(self.params.moment, "w") as file:
-            file.write(repr(time.time()))
-        match self.params.fails_by:
-            case "exception":
-                raise ArithmeticError("asked to raise")
-            case "sys.exit":
-                sys.exit(0)
-            case "os._exit":
-                os._exit(0)
-            case "SIGKILL":
-                os.kill(os.getpid(), signal.SIGKILL)
-            case "SIGSEGV":
-                os.kill(os.getpid(), signal.SIGSEGV)
-            case "SIGSTOP":
-                os.kill(os.getpid(), signal.SIGSTOP)
-            case "deadlock":
-                libc = ctypes.PyDLL(None)  # which holds the interpreter's lock
-                libc.pthread_mutex_lock(LOCK)
-                libc.pthread_mutex_lock(LOCK)
-            case "endless loop":
-                while True:
-                    pass
-            case "compiled loop":
-                self.endless(1)
-            case "polling loop":
-                while not os.path.exists("/never/there"):
-                    time.sleep(0.001)
-            case "NaN":
-                self.value = np.full_like(self.value, np.nan)
-            case "wrong shape":
-                self.value = np.zeros((2, 3))
-            case "impulse of wrong shape":
-                self.odd = {"out.push": np.ones((1, 3))}
-            case "complex":
-                self.odd = {"out.number": self.value + 1j}
-            case "None":
-                self.odd = {"out.push": None}
-            case "huge":  # 6 GB, of which nothing is in memory
-                self.odd = {"out.number": np.broadcast_to(0.0, (250_000_000, 3))}
-            case "out of memory":
-                exhaust()
-
-    def give(self, wanted):
-        return super().give(wanted) | self.odd
+def due(params):
+    """Whether to fail now: `times` in all, at moments that are noted in a file."""
+    path = Path(params.moment)
+    before = path.read_text().count("\n") if path.is_file() else 0
+    if before >= params.times:
+        return False
+    with open(path, "a") as file:
+        file.write(f"{time.time()!r}\n")
+    return True
 
 
-def wait_as_for_a_disk(seconds):
-    """Wait uninterruptibly: who starts a process does, until that one has opened its files."""
-    os.mkfifo("pipe")
-    subprocess.Popen([sys.executable, "-c", OPENS.format(seconds)])
-    opens = [(os.POSIX_SPAWN_OPEN, 0, "pipe", os.O_RDONLY, 0)]
-    os.waitpid(os.posix_spawn("/bin/true", ["true"], {}, file_actions=opens), 0)
-    os.remove("pipe")
+def fail(cause, endless=None):
+    """Fail, where that is done by code that runs; causes that spoil outputs do nothing here."""
+    match cause:
+        case "exception":
+            raise ArithmeticError("asked to raise")
+        case "sys.exit":
+            sys.exit(0)
+        case "os._exit":
+            os._exit(0)
+        case "SIGKILL" | "SIGSEGV" | "SIGSTOP":
+            os.kill(os.getpid(), getattr(signal, cause))
+        case "deadlock":
+            hold_the_lock()
+        case "endless loop":
+            while True:
+                pass
+        case "compiled loop" | "locked loop":
+            endless(1)
+        case "polling loop":
+            while not os.path.exists("/never/there"):
+                time.sleep(0.001)
+        case "out of memory":
+            exhaust()
+        case "disk full":
+            with open("/dev/full", "wb") as file:  # the system's file that never has room
+                file.write(b"results of the solver")
+        case "link cut":
+            cut_link()
+
+
+def hold_the_lock():
+    """Wait for ever in C, with the interpreter's lock held."""
+    library = ctypes.PyDLL(None)
+    library.pthread_mutex_lock(LOCK)
+    library.pthread_mutex_lock(LOCK)
 
 
 def exhaust():
@@ -120,15 +92,27 @@ def exhaust():
         used = int(file.read().split()[0]) * resource.getpagesize()
     resource.setrlimit(resource.RLIMIT_AS, (used + SPARE, resource.RLIM_INFINITY))
     held = []
-    while True:
-        held.append(np.ones(1000))
+    for size in (1_000_000, 1000):  # soon, and then to the last
+        try:
+            while True:
+                held.append(np.empty(size))
+        except MemoryError:
+            if size == 1000:
+                raise
 
 
-def compiled():
-    """Compile a loop without end for numbers above zero, without the interpreter's lock."""
-    from numba import njit  # only this fault compiles
+def cut_link():
+    """Close the connection of this process to the coupler; the process lives on."""
+    sessions = sys.modules["quintet.interfaces.lines.zenoh"].Session
+    for session in [each for each in gc.get_objects() if isinstance(each, sessions)]:
+        session.zenoh.close()
 
-    @njit(nogil=True)
+
+def compiled(nogil):
+    """Compile a loop without end for numbers above zero."""
+    from numba import njit  # only these faults compile
+
+    @njit(nogil=nogil)
     def endless(n):
         while n > 0:
             n = 3 if n == 7 else 7
@@ -138,8 +122,26 @@ def compiled():
     return endless
 
 
-class Waiting(Toy):
-    """Lets the others wait for a good reason."""
+def spoiled(cause, number):
+    """Outputs of a toy that a fault has spoiled."""
+    match cause:
+        case "NaN":
+            return {"out.number": np.full_like(number, np.nan)}
+        case "wrong shape":
+            return {"out.number": np.zeros((2, 3))}
+        case "impulse of wrong shape":
+            return {"out.push": np.ones((1, 3))}
+        case "complex":
+            return {"out.number": number + 1j}
+        case "None":
+            return {"out.push": None}
+        case "huge":  # 6 GB, of which nothing is in memory
+            return {"out.number": np.broadcast_to(0.0, (250_000_000, 3))}
+    return {}
+
+
+class Faulty(Toy):
+    """Fails as it is asked to, the first few times that it comes to that moment."""
 
     @parameters
     class Params:
@@ -148,70 +150,60 @@ class Waiting(Toy):
         substeps: Count = 1
         seen: bool = False
         talks: bool = False
-        fails_at: int = 30
-        fails_by: Literal["", "lock", "disk", "child", "build", "first", "programs"] = ""
-        seconds: float = 0.0
+        fails_in: Moment = "step"
+        fails_at: int = -1  # step
+        fails_by: Cause = "exception"
+        moment: str = ""  # file for the times of the failures
+        times: Count = 1000  # a trial window that fails is no failure of the run
+        differs: bool = False  # whether it steps differently after the first failure
+        child: bool = False  # whether it has a child process, in a session of its own
+        orphan: bool = False  # whether it has started a process whose parent has ended
 
     def __init__(self, params):
         super().__init__(params)
-        if params.fails_by == "build":
-            end = time.time() + params.seconds
-            while time.time() < end:
-                pass
+        self.odd = ""  # the fault of all that it gives
+        self.since_save = 0  # steps
+        self.other = params.differs and Path(params.moment).is_file()
+        loops = {"compiled loop": True, "locked loop": False}
+        by = params.fails_by
+        self.endless = compiled(loops[by]) if by in loops else None
+        if params.child:
+            subprocess.Popen([sys.executable, "-c", OUTLIVES])
+        if params.orphan:
+            subprocess.run([sys.executable, "-c", ORPHANED], check=True)
+        self.come_to("build")
+
+    def come_to(self, moment, here=True):
+        """Fail if that is asked for at this moment."""
+        if moment == self.params.fails_in and here and due(self.params):
+            self.odd = self.params.fails_by
+            fail(self.params.fails_by, self.endless)
+
+    def after(self):
+        """Whether the step was the last one."""
+        return self.steps == self.params.fails_at + 1
+
+    def fail(self):  # called in a step
+        self.come_to("step")
 
     def step(self, dt):
-        if self.params.fails_by == "first" and self.steps == 0:
-            time.sleep(self.params.seconds)
         super().step(dt)
+        self.since_save += 1
+        self.come_to("later", self.since_save > self.params.fails_at)
+        if self.other:
+            self.value = self.value + 1e-12
 
-    def fail(self):
-        seconds = self.params.seconds
-        match self.params.fails_by:
-            case "lock":
-                lock = threading.Lock()
-                lock.acquire()
-                lock.acquire(timeout=seconds)
-            case "disk":
-                wait_as_for_a_disk(seconds)
-            case "child":
-                subprocess.run([sys.executable, "-c", BUSY.format(seconds)], check=True)
-            case "programs":  # one after the other, each short
-                end = time.time() + seconds
-                while time.time() < end:
-                    subprocess.run([sys.executable, "-c", BUSY.format(0.2)], check=True)
+    def give(self, wanted):
+        if self.params.fails_in == "between" and self.after() and due(self.params):
+            threading.Timer(SOON, fail, [self.params.fails_by]).start()
+        self.come_to("give", self.after())
+        return super().give(wanted) | spoiled(self.odd, self.value)
 
+    def save(self):
+        self.come_to("save", self.after())
+        self.since_save = 0
+        return super().save()
 
-class Hanging(Toy):
-    """Hangs as it is built, or as the process that it is in ends."""
-
-    @parameters
-    class Params:
-        items: Count = 5
-        pause: float = 0.0
-        substeps: Count = 1
-        seen: bool = False
-        talks: bool = False
-        fails_at: int = -1
-        fails_by: Literal["sleeps", "computes", "locks", "thread at exit", "lock at exit"]
-
-    def __init__(self, params):
-        super().__init__(params)
-        match params.fails_by:
-            case "sleeps":
-                time.sleep(600.0)
-            case "computes":
-                while True:
-                    pass
-            case "locks":
-                hold_the_lock()
-            case "thread at exit":
-                threading.Thread(target=time.sleep, args=(600.0,)).start()
-            case "lock at exit":
-                atexit.register(hold_the_lock)
-
-
-def hold_the_lock():
-    """Wait for ever in C, with the interpreter's lock held."""
-    library = ctypes.PyDLL(None)
-    library.pthread_mutex_lock(LOCK)
-    library.pthread_mutex_lock(LOCK)
+    def final_warnings(self):
+        self.come_to("finish")
+        return None if self.odd == "None" else {}
