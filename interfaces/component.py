@@ -299,6 +299,14 @@ class Component(ABC):
         """Sentences that the user should read: all so far, in the order in which they came up."""
         return ()
 
+    def check(self) -> None:
+        """Raise `StepError`, with the place, where an item's state is not valid.
+
+        Called at the end of every window, for numbers that the steps do not check: a number that
+        is not finite must be found in the window in which it arises. It costs at most 1 % of it.
+        """
+        return
+
     def warnings(self) -> Mapping[str, str]:
         """Reasons why the results may be wrong, by subject: ``{"energy": "the energy rose ..."}``.
 

@@ -4,6 +4,7 @@ Each message says where, the rule, the value found, and what to do.
 """
 
 from pathlib import Path
+from typing import Any
 
 
 class QuintetError(Exception):
@@ -27,7 +28,17 @@ class OrderError(QuintetError):
 
 
 class StepError(QuintetError):
-    """A component cannot advance: no stable step, or a state that is not finite."""
+    """A component cannot advance: no stable step, or a state that is not finite.
+
+    Parameters
+    ----------
+    place : (3,) numbers, m, or None
+        Where the item at fault is. What is around it is then written into the run's folder.
+    """
+
+    def __init__(self, text: str, place: Any = None) -> None:
+        super().__init__(text)
+        self.place = place
 
 
 class MessageError(QuintetError):

@@ -122,8 +122,14 @@ class DemBodies(Component):
         time, balls = self.accumulated.time + dt, self.stepping.pairs_of_all()
         _, state = self.stepping.whole()
         others, answers = self.lists.bodies, self.stepping.answers
-        text = diagnostics.failure(state, balls, others, time) if answers else ""
-        return StepError(self.stepping.said(text))
+        nothing: tuple[str, Array | None] = "", None
+        text, place = diagnostics.failure(state, balls, others, time) if answers else nothing
+        return StepError(self.stepping.said(text), place)
+
+    def check(self) -> None:
+        """Refuse a body whose rotation is not finite."""
+        if self.stepping.is_alone:
+            diagnostics.check(self.state)
 
     def give(self, wanted: Keys) -> Fields:
         """Copy out the motion of all bodies; if wanted, the loads of contacts in the last step."""

@@ -22,15 +22,19 @@ from quintet.components.dem_bodies.state import (
     Numbers,
     State,
 )
+from quintet.components.shared.finite_items import require_finite_items
 from quintet.interfaces.component import Fields, Totals
+from quintet.interfaces.sums import finite
 
 DOUBTFUL_DEPTH = 0.2  # overlap over contact radius: stiff bodies overlap less
 FEWEST_STEPS = 5  # of a contact
 ALLOWED_DEPTH = 0.5  # overlap over contact radius; Hertz's law is for small ones
 
 
-def failure(state: State, balls: BallPairs | None, others: BodyPairs, time: float) -> str:
-    """Say which body is wrong at a time [s], and what to do."""
+def failure(
+    state: State, balls: BallPairs | None, others: BodyPairs, time: float
+) -> tuple[str, Numbers]:
+    """Say which body is wrong at a time [s], and what to do; return also where it is (3,) m."""
     after, bodies = f"dem_bodies, t = {time:.6g} s", len(state.body) - 1
     finite = np.isfinite(state.motion.sum(axis=1))[state.row]
     if not finite.all():
@@ -40,7 +44,7 @@ def failure(state: State, balls: BallPairs | None, others: BodyPairs, time: floa
             f"{after}: the state must stay finite; body {k} is at {state.position[a].tolist()} m "
             f"with {state.velocity[a].tolist()} m/s under a load of {state.load[a].tolist()} N, "
             "N m. Check its load, or increase steps_per_contact."
-        )
+        ), state.position[a]
     i, j = deepest_pair(state, balls, others)
     other, where = f"body {j}" if j < bodies else "a plane", state.position[state.row[i]]
     return (
@@ -48,7 +52,18 @@ def failure(state: State, balls: BallPairs | None, others: BodyPairs, time: floa
         f"body {i} with {other} is {state.report[DEEPEST]:.3g} of it, near "
         f"{where.round(4).tolist()} m. Increase youngs_modulus or edge_radius, or set impact_speed "
         "to the speed of the impacts."
-    )
+    ), where
+
+
+def check(state: State) -> None:
+    """Refuse rotations that are not finite: what is not in contact may turn for long with them."""
+    rows = state.row[:-1]
+    fields = {"angular velocity": state.angular_velocity, "orientation": state.orientation}
+    if all(finite(array) for array in fields.values()):
+        return
+    of_bodies = {name: array[rows] for name, array in fields.items()}
+    advice = "Check the torques on it, or increase steps_per_contact."
+    require_finite_items("body", of_bodies, np.arange(len(rows)), state.position[rows], advice)
 
 
 @dataclass(slots=True)

@@ -8,7 +8,7 @@ import numpy as np
 from quintet.components.fe_plate import MANIFEST
 from quintet.components.fe_plate.added_mass import AddedMass
 from quintet.components.fe_plate.build import initial_state, structure
-from quintet.components.fe_plate.diagnostics import inside_out, motion, not_finite, totals
+from quintet.components.fe_plate.diagnostics import check, inside_out, motion, not_finite, totals
 from quintet.components.fe_plate.features import Loads, Pressures, Stepped, ranks, stepping_kernel
 from quintet.components.fe_plate.gauges import measured, readings
 from quintet.components.fe_plate.judgement import EVERY, Judge
@@ -144,7 +144,9 @@ class FePlate(Component):
             self._kick_early(dt, loads)
         decay = math.exp(-0.5 * damping * dt)  # of the kinetic energy, in either half
         if total.steps % EVERY == 0:
-            self._note_energies()
+            works, is_first = self.state.works(self.model.moving), total.steps == 0
+            energies = self.state, self._motion(), works, total.brought
+            self.judge.note(*energies, self.all_ranks, is_first)
         total.steps += 1
         if damping:
             add_damped(self.model, self.state, 1.0 - decay)
@@ -158,13 +160,6 @@ class FePlate(Component):
             add_damped(self.model, self.state, 1.0 / decay - 1.0)
         if self.glued:
             self.state.velocity[rows] -= self.half_kick
-
-    def _note_energies(self) -> None:
-        """Take down the energies of the state between two steps, and the work done on it."""
-        works, total = self.state.works(self.model.moving), self.accumulated
-        self.judge.note(
-            self.state, self._motion(), works, total.brought, self.all_ranks, total.steps == 0
-        )
 
     def _kick_early(self, dt: float, loads: Array) -> None:
         """Apply the partners' loads in the step's first half, and not in its second one.
@@ -206,6 +201,10 @@ class FePlate(Component):
             return math.inf
         # A step squashes an element that meets a wall by a small share of its edge.
         return bound / (1.0 + SQUASHED * closing * bound / built.shortest)
+
+    def check(self) -> None:
+        """Refuse an element whose energy, strain, temperature or damage is not finite."""
+        check(self.built, self.state, self.all_ranks)
 
     def give(self, wanted: Keys) -> Fields:
         """Copy out the motion of the surface, its faces that have not eroded, and gauges."""

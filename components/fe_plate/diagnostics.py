@@ -4,9 +4,11 @@ import numpy as np
 
 from quintet.components.fe_plate.build import Structure
 from quintet.components.fe_plate.ranks.method import Ranks
-from quintet.components.fe_plate.state import ENERGY, Array, State
+from quintet.components.fe_plate.state import DAMAGE, ENERGY, Array, State, at_points
+from quintet.components.shared.finite_items import require_finite_items
 from quintet.interfaces.component import Totals
 from quintet.interfaces.errors import StepError
+from quintet.interfaces.sums import finite
 
 
 def motion(state: State, mass: Array, velocity: Array, gravity: Array) -> list[Array]:
@@ -73,7 +75,8 @@ def inside_out(built: Structure, place: int, ratio: float, time: float, ranks: R
     return StepError(
         f"element {number:.0f}, at {np.array2string(np.array(middle), precision=4)} m at the "
         f"start, must keep a positive volume; at {time:g} s it has {ratio:.3g} of that at the "
-        "start: it is inside out. Let it erode by failure_strain, or refine the mesh."
+        "start: it is inside out. Let it erode by failure_strain, or refine the mesh.",
+        middle,
     )
 
 
@@ -85,5 +88,20 @@ def not_finite(built: Structure, state: State, time: float, ranks: Ranks) -> Ste
     number, *place = ranks.lowest(row)
     return StepError(
         f"node {number:.0f}, at {np.array(place)} m at the start: its velocity must be finite; "
-        f"at {time:g} s it is not. Take a smaller courant."
+        f"at {time:g} s it is not. Take a smaller courant.",
+        place,
     )
+
+
+def check(built: Structure, state: State, ranks: Ranks) -> None:
+    """Refuse elements with numbers that are not finite and that a step need not notice."""
+    names = ("specific energy", "plastic strain", "temperature", "damage")
+    inner = state.points[:, ENERGY : DAMAGE + 1]
+    if finite(inner):
+        return
+    places, corners = built.places.point, built.corners(slice(None))
+    fields = {name: at_points(inner, k, places) for k, name in enumerate(names)}
+    numbers = np.arange(ranks.elements.size)[ranks.elements.ids]
+    middle = state.position[corners].mean(axis=1)
+    advice = "Take a smaller courant, or check the constants of its material."
+    require_finite_items("element", fields, numbers, middle, advice)

@@ -147,7 +147,8 @@ class MeshlessGas(Component):
             where = ranks.from_owner(np.hstack(numbers).ravel())
             share = dt / self.scheme.shortest_step
             raise StepError(
-                diagnostics.failure(where[:3], where[3:8], state.time, share, float(where[8]))
+                diagnostics.failure(where[:3], where[3:8], state.time, share, float(where[8])),
+                where[:3],
             )
         if len(domain.mirrored):
             hold_along(domain.mirrored, domain.cloud.normals, state.conservative, work.primitive)

@@ -112,6 +112,10 @@ class ParticleLattice(Component):
         if self.losses.unchecked >= CHECKED:
             self._check()
 
+    def check(self) -> None:
+        """Refuse a point whose velocity or kinetic energy is not finite."""
+        diagnostics.check(self.state, self.rows.ids, self.rows.owned)
+
     def _check(self) -> None:
         """Find lost points, broken bonds and missing energy; stop if the scene requires it."""
         self.losses.check(self.time, *self.rows.least_near(), self.rows.intact())

@@ -4,6 +4,8 @@ import numpy as np
 
 from quintet.components.particle_dynamics.build import CLOSE, place_at_start
 from quintet.components.particle_dynamics.params import Drive, Lattice
+from quintet.components.particle_dynamics.state import State, Whole
+from quintet.components.shared.finite_items import require_finite_items
 from quintet.interfaces.errors import StepError
 
 CHECKED = 20  # steps between two checks for lost points
@@ -86,5 +88,23 @@ def failure(point: int, lattice: Lattice, time: float, skin: float, dt: float) -
     """Name the point that moved furthest in a step dt [s] that neighbour lists do not allow."""
     return StepError(
         f"{_named(point, lattice)}: it must move by less than {0.2 * skin:.3g} m in a step of "
-        f"{dt:.3g} s, and did not, at {time:g} s. Take a smaller courant, or drive and heat less."
+        f"{dt:.3g} s, and did not, at {time:g} s. Take a smaller courant, or drive and heat less.",
+        place_at_start(lattice, point),
     )
+
+
+def check(state: State, numbers: Whole, rows: Whole | slice) -> None:
+    """Refuse points whose motion or energies are not finite.
+
+    Parameters
+    ----------
+    state : State
+        Of this rank.
+    numbers : (m,) int array
+        Of its points.
+    rows : (m,) int array or slice
+        Of these in the state.
+    """
+    fields = {"velocity": state.velocity[rows], "kinetic energy": state.kinetic[rows]}
+    advice = "Take a smaller courant, or drive and heat less."
+    require_finite_items("point", fields, numbers, state.position[rows], advice)

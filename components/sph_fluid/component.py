@@ -11,7 +11,7 @@ from quintet.components.sph_fluid.boundary.method import Films, NoFilms
 from quintet.components.sph_fluid.boundary.planar import in_plane, require_one_metre
 from quintet.components.sph_fluid.boundary.samples import Samples
 from quintet.components.sph_fluid.constants import constants
-from quintet.components.sph_fluid.integration.method import Moved, StepTask
+from quintet.components.sph_fluid.integration.method import StepTask
 from quintet.components.sph_fluid.kernels import write_pressure
 from quintet.components.sph_fluid.pairs.interaction import Interaction
 from quintet.components.sph_fluid.pairs.neighbour_lists import FluidLists
@@ -27,7 +27,7 @@ from quintet.interfaces.component import (
     Resources,
     Totals,
 )
-from quintet.interfaces.errors import OrderError, StepError
+from quintet.interfaces.errors import OrderError
 from quintet.interfaces.faces import polygons
 
 LOADS = frozenset({"surface_load.force"})
@@ -130,7 +130,20 @@ class SphFluid(Component):
             isolated = not len(self.samples.volume) and not self.params.boundary.wall_velocity
             judgement.note(self.state, self.params, self.totals(), isolated, self.all_ranks)
         task = StepTask(dt, rows, rate, self._compute_rates, partial(self._apply_forces, dt))
-        self._finish(self.integration.step(self.state, task, self.team), dt)
+        moved, state = self.integration.step(self.state, task, self.team), self.state
+        shift2, failures, fastest, approach = self.all_ranks.greatest(
+            max(shift2 for shift2, _ in moved),
+            max(failures for _, failures in moved),
+            state.largest_acceleration,
+            state.largest_approach,
+        )
+        if failures:
+            raise diagnostics.failure(state, self.params, dt, self.all_ranks)
+        self.symmetry.reflect_crossed(state)
+        state.moved = math.sqrt(shift2)
+        state.largest_acceleration, state.largest_approach = fastest, approach
+        state.last_dt, state.steps = dt, state.steps + 1
+        self.all_ranks.end_step()
 
     def _list(self) -> None:
         """List what is near, and make room for what is summed over it."""
@@ -156,21 +169,9 @@ class SphFluid(Component):
         self.films.advance(self.state, self.lists.arrays, dt)
         self.pairs.move_with_neighbours(self.state, dt, self.team)
 
-    def _finish(self, moved: Moved, dt: float) -> None:
-        state = self.state
-        shift2, failures, fastest, approach = self.all_ranks.greatest(
-            max(shift2 for shift2, _ in moved),
-            max(failures for _, failures in moved),
-            state.largest_acceleration,
-            state.largest_approach,
-        )
-        if failures:
-            raise StepError(diagnostics.failure(state, self.params, dt, self.all_ranks))
-        self.symmetry.reflect_crossed(state)
-        state.moved = math.sqrt(shift2)
-        state.largest_acceleration, state.largest_approach = fastest, approach
-        state.last_dt, state.steps = dt, state.steps + 1
-        self.all_ranks.end_step()
+    def check(self) -> None:
+        """Refuse a particle whose velocity is not finite."""
+        diagnostics.check(self.state, self.params)
 
     def give(self, wanted: Keys) -> Fields:
         """Copy out the mean force of the last step on each sample, and what gauges read now."""

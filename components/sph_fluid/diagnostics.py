@@ -4,15 +4,18 @@ import math
 
 import numpy as np
 
+from quintet.components.shared.finite_items import require_finite_items
 from quintet.components.sph_fluid.laws import TAIT, Constants
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.ranks.method import Ranks
-from quintet.components.sph_fluid.state import Array, State
+from quintet.components.sph_fluid.state import Array, State, Whole
 from quintet.interfaces.component import Totals
 from quintet.interfaces.errors import StepError
+from quintet.interfaces.sums import finite
 
 MACH = 0.5  # of the speed of sound: what strikes the fluid faster is refused
 OTHERS = "a particle failed; rank 0 names it."  # said by the other ranks
+MOST_LOST = 2000  # particles among which the first one is sought
 FEW = 1e-3  # of the fluid: so many particles may be denser for no such reason
 
 
@@ -51,22 +54,58 @@ def _elastic(density: Array, params: SphFluidParams, constants: Constants) -> Ar
     return np.asarray(constants.stiffness / constants.density * (power + 1.0 / ratio - 1.0))
 
 
-def failure(state: State, params: SphFluidParams, dt: float, ranks: Ranks) -> str:
+def failure(state: State, params: SphFluidParams, dt: float, ranks: Ranks) -> StepError:
     """Say which particle of all ranks a step [s] failed on, and what to do; rank 0 alone knows."""
     whole = ranks.whole(state)
     worst = 0 if ranks.rank else _worst(whole, params.spacing, dt)
     owner = ranks.owner(state, 0 if ranks.rank else int(whole.identity[worst]))
     if ranks.rank:
-        return OTHERS
+        return StepError(OTHERS)
     x, y, z, density = whole.position_density[worst].tolist()
+    if not math.isfinite(x + y + z) and len(whole.reference) > worst:
+        x, y, z = whole.reference[worst].tolist()  # where it was in the last lists
     speed = math.hypot(*whole.velocity_pressure[worst, :3].tolist())
-    return (
+    text = (
         f"step {state.steps} of {dt:.3g} s: a fluid particle must stay finite, have a positive "
         f"density and move less than a spacing ({params.spacing:.3g} m); particle "
         f"{whole.identity[worst]}{owner} at ({x:.4g}, {y:.4g}, {z:.4g}) m has {speed:.4g} m/s and "
         f"{density:.4g} kg/m3. Lower courant (now {params.courant}), raise viscosity.artificial or "
         "sound_speed, or look for a surface that moves too fast."
     )
+    return StepError(text, (x, y, z))
+
+
+def check(state: State, params: SphFluidParams) -> None:
+    """Refuse velocities that are not finite: the next step alone would find them."""
+    rows = slice(state.fluid)
+    motion = state.velocity_pressure[rows]
+    if finite(motion):
+        return
+    fields = {"velocity": motion[:, :3], "pressure over squared density": motion[:, 3]}
+    places = state.position_density[rows, :3]
+    advice = f"Lower courant (now {params.courant}), or look at what is around it."
+    require_finite_items("particle", fields, state.identity, places, advice)
+
+
+def _origin(listed: Array, lost: Whole) -> int:
+    """Row of the particle whose listed neighbours are those that are lost: it spoilt them.
+
+    Parameters
+    ----------
+    listed : (fluid, 3) float array, m
+        Where the neighbour lists were made.
+    lost : (k,) int array
+        Rows of particles at no place.
+    """
+    if len(listed) <= lost[-1] or len(lost) > MOST_LOST:
+        return int(lost[0])
+    low, high = listed[lost].min(axis=0), listed[lost].max(axis=0)
+    size = float(np.linalg.norm(high - low))
+    near = np.flatnonzero(((listed >= low - size) & (listed <= high + size)).all(axis=1))
+    is_lost = np.isin(near, lost)
+    away = (np.linalg.norm(listed[near] - listed[row], axis=1) for row in lost)
+    nearest = (np.argsort(distance, kind="stable")[: len(lost)] for distance in away)
+    return int(lost[np.argmax([int(is_lost[rows].sum()) for rows in nearest])])
 
 
 def _worst(state: State, spacing: float, dt: float) -> int:
@@ -74,8 +113,8 @@ def _worst(state: State, spacing: float, dt: float) -> int:
     rows = slice(state.fluid)
     position, velocity = state.position_density[rows], state.velocity_pressure[rows]
     placed = np.isfinite(position[:, :3]).all(axis=1)
-    if not placed.all():  # what it has made of its neighbours in this step has a place
-        return int(np.argmin(placed))
+    if not placed.all():
+        return _origin(state.reference[rows], np.flatnonzero(~placed))
     finite = np.isfinite(position).all(axis=1) & np.isfinite(velocity).all(axis=1)
     if not finite.all():
         return int(np.argmin(finite))
@@ -104,7 +143,8 @@ def refuse_dense(state: State, params: SphFluidParams, ranks: Ranks) -> None:
         f"step {state.steps}: what strikes the fluid must be slower than half its sound_speed "
         f"({MACH * params.sound_speed:.3g} m/s), a tenth to be right, so that its density stays "
         f"below {most:.4g} kg/m3; {_met(whole, worst, owner)} Raise sound_speed to ten times the "
-        "largest velocity, or slow what moves."
+        "largest velocity, or slow what moves.",
+        whole.position_density[worst, :3],
     )
 
 

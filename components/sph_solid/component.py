@@ -8,7 +8,7 @@ import numpy as np
 from quintet.components.shared.threads import Team
 from quintet.components.sph_solid import MANIFEST
 from quintet.components.sph_solid.build import gauged, initial_state, materials, pair_law
-from quintet.components.sph_solid.diagnostics import failure, totals
+from quintet.components.sph_solid.diagnostics import check, failure, totals
 from quintet.components.sph_solid.features import pair_sums, ranks
 from quintet.components.sph_solid.gauges import bodies, gauges, levels
 from quintet.components.sph_solid.glue import add_work, glued_rows, pull, release, write_forces
@@ -35,7 +35,6 @@ from quintet.interfaces.component import (
     Resources,
     Totals,
 )
-from quintet.interfaces.errors import StepError
 
 FEWEST = 500  # particles that are worth handing to another thread
 LOAD = "glued_load.force"
@@ -140,8 +139,12 @@ class SphSolid(Component):
         add_work(state, dt)
         wrong = float(not math.isfinite(sum(squares)))
         if self.all_ranks.greatest(np.array([wrong]))[0]:
-            raise StepError(failure(state, self.params, dt, self.all_ranks))
+            raise failure(state, self.params, dt, self.all_ranks)
         self.all_ranks.end_step()
+
+    def check(self) -> None:
+        """Refuse a particle whose energy, strain, temperature or damage is not finite."""
+        check(self.state, self.params)
 
     def warnings(self) -> Mapping[str, str]:
         """Reasons why the results may be wrong: energy that appears, numerical fracture."""
@@ -173,7 +176,7 @@ class SphSolid(Component):
         middle = state.position + 0.5 * dt * state.velocity
         wrong = float(self.lists.is_unstable(spread) or not np.isfinite(middle).all())
         if self.all_ranks.greatest(np.array([wrong]))[0]:
-            raise StepError(failure(state, self.params, dt, self.all_ranks))
+            raise failure(state, self.params, dt, self.all_ranks)
         self.lists.widen(state, spread)
         self.all_ranks.sort(state, middle)
         self._list()

@@ -2,10 +2,12 @@
 
 import numpy as np
 
+from quintet.components.shared.finite_items import require_finite_items
 from quintet.components.sph_solid.params import SphSolidParams
 from quintet.components.sph_solid.ranks.method import Ranks
 from quintet.components.sph_solid.state import Array, State, Whole
 from quintet.interfaces.component import Totals
+from quintet.interfaces.errors import StepError
 from quintet.interfaces.params import Vector
 
 
@@ -40,15 +42,15 @@ def totals(state: State, mass: Array, carried: Whole, gravity: Vector, ranks: Ra
     )
 
 
-def failure(state: State, params: SphSolidParams, dt: float, ranks: Ranks) -> str:
+def failure(state: State, params: SphSolidParams, dt: float, ranks: Ranks) -> StepError:
     """Say which particle of all ranks a step [s] failed on, and what to do; rank 0 alone knows."""
     whole = ranks.whole(state)
     row, speed = (0, 0.0) if ranks.rank else _worst(whole)
     owner = ranks.owner(state, 0 if ranks.rank else int(whole.identity[row]))
     if ranks.rank:
-        return "a particle failed; rank 0 names it."
+        return StepError("a particle failed; rank 0 names it.")
     x, y, z = whole.position[row]
-    return (
+    text = (
         f"step of {dt:.3g} s at {state.time:.4g} s: in a step particles must stay finite and move "
         f"by little more than a smoothing length, {params.length:.3g} m; particle "
         f"{whole.identity[row]}{owner} of body {whole.body[row]}, at ({x:.4g}, {y:.4g}, {z:.4g}) "
@@ -56,6 +58,19 @@ def failure(state: State, params: SphSolidParams, dt: float, ranks: Ranks) -> st
         f"{whole.pressure[row]:.3g} Pa. Lower courant (now {params.courant}), raise the "
         "viscosities, or look for bodies that overlap at the start."
     )
+    return StepError(text, (x, y, z))
+
+
+def check(state: State, params: SphSolidParams) -> None:
+    """Refuse numbers that are not finite and that the next step need not notice."""
+    fields = {
+        "specific energy": state.energy,
+        "plastic strain": state.strain,
+        "temperature": state.temperature,
+        "damage": state.damage,
+    }
+    advice = f"Lower courant (now {params.courant}), or check the constants of its material."
+    require_finite_items("particle", fields, state.identity, state.position, advice)
 
 
 def _worst(state: State) -> tuple[int, float]:

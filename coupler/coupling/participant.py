@@ -8,6 +8,8 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+import numpy as np
+
 from quintet.coupler.coupling.answers import AnswerSums, check_answer, check_outputs
 from quintet.interfaces.component import Array, Field, Fields
 from quintet.interfaces.errors import LineError, MessageError, QuintetError, SceneError
@@ -20,11 +22,26 @@ LONGEST_WAIT = 86400.0  # s for one answer, also of a component that nobody watc
 
 
 class ComponentFailed(QuintetError):
-    """A component, or the line to it, failed: who, in which window, why."""
+    """A component, or the line to it, failed: who, in which window, why.
+
+    Where an item was at fault, `place` (3,) m is where, and `shown` what there is to see.
+    """
 
     def __init__(self, component: str, window: int, cause: str, trace: str = "") -> None:
         self.component, self.window, self.cause, self.trace = component, window, cause, trace
+        self.place: Array = np.full(3, np.nan)
+        self.shown: Fields = {}
+        self.units: dict[str, str] = {}
         super().__init__(f"{component} failed in window {window}: {cause}")
+
+    def look(self, message: Message) -> None:
+        """Take what the component showed with its failure, if that is well-formed."""
+        place, units = message.header.get("place"), message.header.get("units")
+        if not isinstance(place, list) or not isinstance(units, dict) or len(place) != 3:
+            return
+        if all(type(number) in (int, float) for number in place):
+            self.place, self.shown = np.array(place, float), message.fields
+            self.units = {str(key): str(unit) for key, unit in units.items()}
 
 
 class TrialFailed(QuintetError):
@@ -121,7 +138,7 @@ class Participant:
                 check_answer(self.order, message)
                 if self.sums and self.order == "advance":
                     self.sums.check(message)
-            if finite:
+            if finite and not failed:
                 giver = sendable(str(message.header.get("giver", "it")))
                 require_finite(message.fields, f"what {giver} gave")
         except MessageError as error:
@@ -139,7 +156,9 @@ class Participant:
                 raise SceneError(f"components.{self.name}: {text}")
             said = f"{sendable(str(message.header.get('error')))}: {text}"
             trace = sendable(str(message.header.get("traceback", "")))
-            raise ComponentFailed(self.name, self.window, said, trace)
+            failure = ComponentFailed(self.name, self.window, said, trace)
+            failure.look(message)
+            raise failure
         return message
 
     def _failure(self, error: QuintetError) -> BaseException:

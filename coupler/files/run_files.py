@@ -18,7 +18,7 @@ PICTURES = ("scene.png", "comparison.png")
 DRAWN, REPORT = "drawn.png", "report.html"  # by quintet draw and report, where not elsewhere
 RUN_FILES = (RESULTS, RECORDING, LEDGER, SCENE, *PICTURES, DRAWN, REPORT, RESERVE)  # of every run
 SNAPSHOTS = "snapshot-*.h5"
-VIEWS, WALLS = ".vtkhdf", ".walls.vtkhdf"
+VIEWS, WALLS, FAILURE = ".vtkhdf", ".walls.vtkhdf", ".failure.vtkhdf"
 
 
 def view_file(component: str) -> str:
@@ -29,6 +29,16 @@ def view_file(component: str) -> str:
 def walls_file(component: str) -> str:
     """File with what stands still around a component; no name of a component has a dot."""
     return f"{component}{WALLS}"
+
+
+def failure_file(component: str) -> str:
+    """File with what was around the item at which a component failed."""
+    return f"{component}{FAILURE}"
+
+
+def failure_files(components: Iterable[str]) -> list[str]:
+    """Files that a run leaves only where it fails."""
+    return [*map(failure_file, components)]
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from quintet.coupler.files import vtkhdf_reader
-from quintet.coupler.files.run_files import VIEWS, WALLS
+from quintet.coupler.files.run_files import FAILURE, VIEWS, WALLS
 from quintet.interfaces.component import Array
 from quintet.interfaces.faces import WALL
 
@@ -46,8 +46,9 @@ class Shown:
 
 
 def view_files(run: Path) -> list[Path]:
-    """Files of a run that show components, by name, but for those of walls."""
-    files = sorted(path for path in Path(run).glob(f"*{VIEWS}") if not path.name.endswith(WALLS))
+    """Files of a run that show components, by name, but for those of walls and of failures."""
+    others = (WALLS, FAILURE)
+    files = sorted(path for path in Path(run).glob(f"*{VIEWS}") if not path.name.endswith(others))
     return [path for path in files if len(vtkhdf_reader.times(path))]
 
 

@@ -23,6 +23,7 @@ from quintet.coupler.files.run_files import (
     RUN_FILES,
     RUN_LOG,
     Marker,
+    failure_file,
     leftovers,
     may_write,
     new_marker,
@@ -49,7 +50,8 @@ def files_of(scene: Scene) -> list[str]:
     """Names of all files that a run of a scene may write, but for its snapshots."""
     logs = [f"{name}.{end}" for name in scene.components for end in ("log", "exit")]
     logs += [*COUPLER_OUTPUT, JOB_FILE, LAUNCHER_LOG, reached.NAME]
-    views = [file_of(name) for name in scene.components for file_of in (view_file, walls_file)]
+    kinds = (view_file, walls_file, failure_file)
+    views = [file_of(name) for name in scene.components for file_of in kinds]
     convergence = [log_file(group) for group in scene.coupling.iterated()]
     return [*RUN_FILES, *views, *convergence, *(f"log/{name}" for name in logs)]
 

@@ -29,7 +29,7 @@ from quintet.coupler.files.disk import (
 )
 from quintet.coupler.files.reached import NAME as REACHED
 from quintet.coupler.files.reached import Reached
-from quintet.coupler.files.run_files import LEDGER, RESULTS, SCENE
+from quintet.coupler.files.run_files import LEDGER, RESULTS, SCENE, failure_files
 from quintet.coupler.launch.companion import Companion, once_gone
 from quintet.coupler.launch.connect import Connection, connect
 from quintet.coupler.launch.disturbance import UNDISTURBED, Disturbance
@@ -127,6 +127,8 @@ class ActiveRun:
     def run(self) -> None:
         """Join the components and couple them to the end, or until a signal ends it."""
         scene = self.scene
+        for name in failure_files(scene.components):  # of an earlier part of this run
+            (self.folder / name).unlink(missing_ok=True)
         main = threading.current_thread() is threading.main_thread()
         if self.stop.leave and self.watchdog.in_main_thread:
             self._started = OwnProcesses(self.watchdog.mark)
@@ -214,6 +216,7 @@ class ActiveRun:
                     error, self.scene, self.folder, writer, remark
                 )
                 self._suspect_coupling()
+                self._leave_traces(error)
             if self._connection:
                 self._connection.close(False)
             for file in self.files:
@@ -223,6 +226,20 @@ class ActiveRun:
                 self.outcome["status"] = "interrupted"
             self.outcome["warnings"] = self.ledger.warnings.summary()
             return conclude(self)
+
+    def _leave_traces(self, error: Exception) -> None:
+        """Write what helps to find the cause of a failure; say where what is around it lies."""
+        if not (fault := self.outcome.get("fault")) or isinstance(error, DiskError):
+            return
+        # Left out of runs that do not fail.
+        from quintet.coupler.run.blow_up import write_neighbourhood
+
+        if not isinstance(error, ComponentFailed):
+            return
+        time, headline = self.writer.time, self.scene.headline
+        if said := write_neighbourhood(self.folder, error, time, headline):
+            print(f"  {said}", file=sys.stderr, flush=True)
+            fault["neighbourhood"] = said
 
     def _suspect_coupling(self) -> None:
         """Say beside a failure which couplings were doubtful before it."""

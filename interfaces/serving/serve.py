@@ -14,9 +14,17 @@ from typing import Any
 import numpy as np
 
 from quintet.interfaces.component import Component, Fields, outputs_of
-from quintet.interfaces.errors import LineError, OrderError, PortError, QuintetError, StepError
+from quintet.interfaces.errors import (
+    LineError,
+    MessageError,
+    OrderError,
+    PortError,
+    QuintetError,
+    StepError,
+)
 from quintet.interfaces.lines.message import Message, require_finite
 from quintet.interfaces.lines.transport import Line
+from quintet.interfaces.serving.failing import shown_at_failure
 from quintet.interfaces.serving.inputs import Inputs
 from quintet.interfaces.serving.order_guard import OrderGuard
 from quintet.interfaces.serving.orders import check_order
@@ -54,10 +62,13 @@ class Server:
         component: Component,
         name: str,
         build_seconds: float = 0.0,
-        spread: Callable[[Fields], Fields] = lambda state: state,
+        spread: Callable[[Fields], Fields] | None = None,
     ) -> None:
         self.component, self.build_seconds = component, build_seconds
-        self._spread = spread  # gives a saved state to all ranks of the component
+        self.is_alone = spread is None  # whether it has one rank
+        self._spread = spread or (
+            lambda state: state
+        )  # gives a saved state to all ranks of the component
         self.guard = OrderGuard(name)
         self.inputs = Inputs(component.takes)
         self.outputs = self.outputs_class(component.gives, component.gives_integrals)
@@ -153,6 +164,7 @@ class Server:
         self.inputs.arrive(message.fields, header["ends"], window)
         received = {k: column_sums(v) for k, v in message.fields.items() if self._integral(k)}
         steps, applied, outputs = self.advance(window, int(header.get("steps", 0)))
+        self.component.check()
         fields = self.outputs.collect(outputs)
         answer = {
             "steps": steps,
@@ -374,7 +386,12 @@ def answer(server: Server, line: Line, message: Message) -> bool:
             line.send({**report, "order": "unable", "traceback": ""}, {})
             return True
         print(report["traceback"], end="", file=sys.stderr, flush=True)  # into the component's log
-        line.send(report, {})
+        is_told = server.is_alone and message.order == "advance"
+        more, shown = shown_at_failure(server.component, error) if is_told else ({}, {})
+        try:
+            line.send({**report, **more}, shown)
+        except MessageError:  # too large for the line
+            line.send(report, {})
         return False
     return message.order != "finish"
 

@@ -34,6 +34,7 @@ class OneRank:
     threads : int
     """
 
+    is_alone = True  # whether there is no other rank
     answers = True  # whether the rows of all are here on request
 
     def __init__(self, state: State, lists: ContactLists, threads: int) -> None:

@@ -51,6 +51,8 @@ class SeveralRanks(OneRank):
 
     lists: SharedLists
 
+    is_alone = False
+
     def __init__(self, rows: RowsOfRank, lists: SharedLists, threads: int) -> None:
         self.model, self.state, self.rows = rows.model, rows.state, rows
         self.lists, self.shares = lists, rows.shares

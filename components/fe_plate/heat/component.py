@@ -12,6 +12,7 @@ from quintet.components.fe_plate.heat.ports import SHOWS
 from quintet.components.fe_plate.heat.view import view
 from quintet.components.fe_plate.meshes.arrays import Array
 from quintet.components.fe_plate.meshes.mesh import faces_in
+from quintet.components.shared.finite_items import require_finite_items
 from quintet.components.shared.geometry.surface_samples_mesh import mesh_answer
 from quintet.components.shared.search.nearest import nearest_rows
 from quintet.interfaces.component import Component, Fields, Keys, Totals
@@ -84,6 +85,7 @@ class FeHeat(Component):
 
     def step(self, dt: float) -> None:
         """Advance by exactly dt [s], or find what is steady."""
+        self.check()  # else the solver would only not converge
         load = self.model.source.copy()
         load[self.surface] += self.state.heat
         gained = self.conduction.advance(self.state, dt, load)
@@ -91,6 +93,13 @@ class FeHeat(Component):
         flow = np.bincount(self.model.holder[held], -gained[held], len(self.state.held))
         self.state.held[:] = flow
         self.state.outside[0] += dt * float(flow.sum() + self.model.source.sum())
+
+    def check(self) -> None:
+        """Refuse a node whose temperature is not finite."""
+        nodes = self.model.mesh.node
+        fields = {"temperature": self.state.temperature}
+        advice = "Check the heat that enters there."
+        require_finite_items("node", fields, np.arange(len(nodes)), nodes, advice)
 
     def give(self, wanted: Keys) -> Fields:
         """Copy out temperatures and heat flows."""

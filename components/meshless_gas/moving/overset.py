@@ -59,7 +59,9 @@ class FringeStencils:
             4 if layout.planar else 6, neighbours,
         )  # fmt: skip
         if lacks >= 0:
-            raise StepError(too_few(layout.fringe_count, cloud.positions[lacks]))
+            raise StepError(
+                too_few(layout.fringe_count, cloud.positions[lacks]), cloud.positions[lacks]
+            )
         other = (cloud.region[neighbours[rows]] != region[rows][:, None]).any(axis=1)
         whole = active[layout.home[rows]].all(axis=1)
         back = rows[whole & ~other]
@@ -112,7 +114,8 @@ class FringeStencils:
         )  # fmt: skip
         bad = rows[self.quality[rows] < SOUND]
         if len(bad):
-            raise StepError(too_few(self.layout.fringe_count, cloud.positions[bad[0]]))
+            place = cloud.positions[bad[0]]
+            raise StepError(too_few(self.layout.fringe_count, place), place)
         self.weigh(rows)
 
     def weigh(self, rows: Rows) -> None:
@@ -125,7 +128,8 @@ class FringeStencils:
         weights = np.empty((len(places), self.weights.shape[1]))
         lacks = write_weights(edges, cloud.kind, cloud.normals, *self.stencils, weights)
         if lacks >= 0:
-            raise StepError(too_few(self.layout.fringe_count, cloud.positions[edges[lacks]]))
+            place = cloud.positions[edges[lacks]]
+            raise StepError(too_few(self.layout.fringe_count, place), place)
         self.weights[places] = weights
 
     def refit(self, centre: Array) -> None:

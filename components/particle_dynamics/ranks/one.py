@@ -28,6 +28,8 @@ class OneRank:
 
     def __init__(self, state: State, model: Model, terms: Terms) -> None:
         self.state, self.model, self.terms = state, model, terms
+        self.ids: Whole = np.arange(len(state.position))  # points of this rank
+        self.owned: Whole | slice = slice(None)  # their rows
         self.bathed: Whole = np.arange(len(state.heat))  # whose baths are computed here
         self.lists = Neighbours(terms.law.cutoff2, terms.lowest, terms.period)
         self.skin = self.lists.skin  # m

@@ -57,7 +57,7 @@ class SeveralRanks:
         self._shares = Shares(communicator, model, terms.bonds, cells)
         self._bonds_of_all = len(terms.bonds)
         self.terms = terms = terms._replace(bonds=self._shares.bonds)
-        self.bathed = self._shares.bathed
+        self.bathed, self.ids = self._shares.bathed, self._shares.ids
         self._all = Replication(communicator, self._shares.ids, 3) if model.collision_rate else None
         cutoff = math.sqrt(terms.law.cutoff2)
         self.skin = SKIN * cutoff  # m
@@ -99,6 +99,11 @@ class SeveralRanks:
         """Rows of this rank's points, or what the state has of it."""
         array: Array = getattr(self.state, name)
         return array[self._layout.owned] if name in POINTS and len(array) else array
+
+    @property
+    def owned(self) -> Whole | slice:
+        """Rows of this rank's points."""
+        return self._layout.owned
 
     def reduced(self, built: Built) -> Built:
         """What the lattice was built of, as far as this rank needs it."""

@@ -13,8 +13,16 @@ from quintet.components.particle_dynamics.spheres.features import spheres_of
 from quintet.components.particle_dynamics.spheres.kernels import fly
 from quintet.components.particle_dynamics.spheres.params import ParticleSpheresParams
 from quintet.components.particle_dynamics.spheres.ports import SHOWS
-from quintet.components.particle_dynamics.spheres.state import DEEPEST, HEATED, TIME, Spheres, State
+from quintet.components.particle_dynamics.spheres.state import (
+    DEEPEST,
+    HEATED,
+    TIME,
+    Spheres,
+    State,
+    launch,
+)
 from quintet.components.particle_dynamics.spheres.view import view
+from quintet.components.shared.finite_items import require_finite_items
 from quintet.components.shared.geometry.surface_samples import rigid_answer, sphere
 from quintet.interfaces.component import (
     ONE_THREAD,
@@ -59,7 +67,7 @@ class ParticleSpheres(Component):
         self.stages = np.array(STAGES[params.integrator])
         self.rows, self.impacts = spheres_of(resources, params, spheres)
         self.heat_flow = 0.0  # W, to all spheres
-        self._launch(0.0)
+        launch(self.spheres, self.state, 0.0)
 
     @property
     def spheres(self) -> Spheres:
@@ -70,14 +78,6 @@ class ParticleSpheres(Component):
     def state(self) -> State:
         """What moves, of the spheres of this rank."""
         return self.rows.state
-
-    def _launch(self, until: float) -> None:
-        """Give the first velocities to spheres that are launched by a time [s]."""
-        spheres, state = self.spheres, self.state
-        rows = ~state.launched & (spheres.launch <= until)
-        state.velocity[rows] = spheres.first_velocity[rows]
-        state.spin[rows] = spheres.first_spin[rows]
-        state.launched[rows] = True
 
     def describe(self) -> Fields:
         """State radius and mass; for a gas also heat capacity and the size of parcels."""
@@ -160,7 +160,7 @@ class ParticleSpheres(Component):
         """Fly, then bounce; a sphere that is launched within the step flies for the rest of it."""
         spheres, state = self.spheres, self.state
         end, launched = float(state.sums[TIME]) + dt, state.launched.copy()
-        self._launch(end + ROUNDING * dt)
+        launch(spheres, state, end + ROUNDING * dt)
         fly(
             dt, end, self.stages, self.gravity, spheres.launch, launched, spheres.start,
             spheres.mass, spheres.inertia, spheres.tether, state.force, state.torque,
@@ -173,10 +173,22 @@ class ParticleSpheres(Component):
         if wrong < self.rows.count:
             raise StepError(
                 f"sphere {wrong}: its velocity must be finite; it is not, at {end:g} s. Check the "
-                "loads on it."
+                "loads on it.",
+                state.position[min(wrong, len(state.position) - 1)],
             )
         if self.impacts is not None:
             self.impacts.resolve(dt, self._acceleration())
+
+    def check(self) -> None:
+        """Refuse a sphere whose rotation or temperature is not finite."""
+        state = self.state
+        fields = {
+            "temperature": state.temperature,
+            "angular velocity": state.spin,
+            "orientation": state.orientation,
+        }
+        advice = "Check the loads on it, and the heat that it gets."
+        require_finite_items("sphere", fields, self.rows.ids, state.position, advice)
 
     def give(self, wanted: Keys) -> Fields:
         """Copy out motion, temperature and size."""

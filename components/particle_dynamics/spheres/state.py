@@ -42,3 +42,11 @@ class State(NamedTuple):
 # Rows of `State.sums`: s; J of impacts, J of partners; the largest overlap over the smaller
 # diameter after a step that no division could shorten enough.
 TIME, LOST, HEATED, DEEPEST = range(4)
+
+
+def launch(spheres: Spheres, state: State, until: float) -> None:
+    """Give the first velocities to spheres that are launched by a time [s]."""
+    rows = ~state.launched & (spheres.launch <= until)
+    state.velocity[rows] = spheres.first_velocity[rows]
+    state.spin[rows] = spheres.first_spin[rows]
+    state.launched[rows] = True

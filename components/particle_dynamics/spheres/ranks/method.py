@@ -13,6 +13,7 @@ class Ranks(Protocol):
     count: int  # spheres of all ranks
     spheres: Spheres  # of this rank
     state: State  # of this rank
+    ids: Array  # (m,) numbers of the spheres of this rank
 
     def greatest(self, number: float) -> float:
         """Largest of all ranks of a number."""

@@ -20,6 +20,7 @@ class OneRank:
 
     def __init__(self, spheres: Spheres, state: State) -> None:
         self.spheres, self.state, self.count = spheres, state, len(spheres.mass)
+        self.ids = np.arange(self.count)
 
     def greatest(self, number: float) -> float:
         """Return the number."""
