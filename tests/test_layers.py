@@ -32,7 +32,7 @@ FLOORS = {
         {"scene"},
         {"launch", "report", "reference", "chaos"},
         {"run"},
-        {"study", "bench", "conform"},
+        {"study", "bench", "conform", "debug"},
         {"cli", "python"},
     ],
 }

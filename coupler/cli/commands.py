@@ -8,6 +8,7 @@ from pathlib import Path
 
 from quintet.coupler.cli import (
     certificates,
+    debugging,
     kinds,
     launching,
     pictures,
@@ -73,7 +74,7 @@ def parser() -> argparse.ArgumentParser:
         return added
 
     for group in (
-        reference, runs, pictures, launching, certificates, studies, kinds, scaling
+        reference, runs, pictures, debugging, launching, certificates, studies, kinds, scaling
     ):  # fmt: skip
         group.add_commands(command)
     return top

@@ -111,6 +111,7 @@ class Participant:
         self._answered = True  # whether the answer to the last order is known
         self._kept: dict[int, tuple[int, float]] = {}  # window and stable step, by depth
         self.trial = False  # whether its windows are a trial, undone afterwards
+        self.window_order: tuple[dict[str, Any], Fields] = ({}, {})  # the last of a window
 
     def send_order(self, order: str, fields: Fields | None = None, **header: Any) -> None:
         """Send an order."""
@@ -118,9 +119,12 @@ class Participant:
         self.order, self._answered = order, False
         if self.trial:
             header["trial"] = True
+        header, fields = {"order": order, "window": self.window, **header}, fields or {}
+        if order == "advance":
+            self.window_order = header, fields
         try:
             with self.keeping_others_waiting:
-                self.line.send({"order": order, "window": self.window, **header}, fields or {})
+                self.line.send(header, fields)
         except (LineError, MessageError) as error:
             raise self._failure(error) from error
 

@@ -287,8 +287,7 @@ class Recording(_Closed):
     """
 
     def __init__(self, path: Path | str) -> None:
-        path = Path(path)
-        self.path = path / NAME if path.is_dir() else path
+        self.path = Path(path) / NAME if Path(path).is_dir() else Path(path)
         if not self.path.is_file():
             raise SceneError(f"recording {self.path}: there is no such file. Run the scene first.")
         self._file: Any = None
@@ -328,7 +327,7 @@ class Recording(_Closed):
 
     def times(self, name: str) -> Array:
         """Return the times (rows,) s of a component's rows."""
-        return self._marks(name)["times"]
+        return self.marks(name)["times"]
 
     @property
     def tick(self) -> float:
@@ -337,7 +336,7 @@ class Recording(_Closed):
 
     def ticks(self, name: str) -> Array:
         """Return the times (rows,) of a component's rows, int, in ticks."""
-        return self._marks(name)["ticks"]
+        return self.marks(name)["ticks"]
 
     def fields(self, name: str) -> tuple[str, ...]:
         """Return the names of the fields that were recorded."""
@@ -385,15 +384,16 @@ class Recording(_Closed):
         if self._file:
             self._file.close()
 
-    def _marks(self, name: str) -> dict[str, Array]:
+    def marks(self, name: str) -> dict[str, Array]:
+        """Return time [s], ticks and stable step [s] of a component's rows, each (rows,)."""
         self._require(name)
         with readable(self.path):
             return self._checked.marks(name)
 
     def _require(self, name: str, field: str | None = None) -> None:
         """Refuse the name of a component, or of a field, that is not there."""
+        place = f"recording {self.path}: {name}"
         if name not in self._data:
-            raise SceneError(unknown(f"recording {self.path}: {name}", name, self._data))
+            raise SceneError(unknown(place, name, self._data))
         if field is not None and field not in self._data[name]:
-            place = f"recording {self.path}: {name}.{field}"
-            raise SceneError(unknown(place, field, self._data[name]))
+            raise SceneError(unknown(f"{place}.{field}", field, self._data[name]))

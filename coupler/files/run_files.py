@@ -13,10 +13,13 @@ FORMAT = 1
 MARKER, LOCK = "quintet-run.json", "quintet-run.lock"
 RECORDING = "recording.h5"
 RESULTS, LEDGER, SCENE = "results.json", "ledger.csv", "scene.toml"
+FAILED_ORDERS = "failed-orders.msg"  # last orders of windows, of a run that failed
 RUN_LOG = "run.log"  # what a run printed that a study started
 PICTURES = ("scene.png", "comparison.png")
 DRAWN, REPORT = "drawn.png", "report.html"  # by quintet draw and report, where not elsewhere
-RUN_FILES = (RESULTS, RECORDING, LEDGER, SCENE, *PICTURES, DRAWN, REPORT, RESERVE)  # of every run
+RUN_FILES = (  # of every run
+    RESULTS, RECORDING, LEDGER, SCENE, *PICTURES, DRAWN, REPORT, FAILED_ORDERS, RESERVE,
+)  # fmt: skip
 SNAPSHOTS = "snapshot-*.h5"
 VIEWS, WALLS, FAILURE = ".vtkhdf", ".walls.vtkhdf", ".failure.vtkhdf"
 
@@ -38,7 +41,7 @@ def failure_file(component: str) -> str:
 
 def failure_files(components: Iterable[str]) -> list[str]:
     """Files that a run leaves only where it fails."""
-    return [*map(failure_file, components)]
+    return [FAILED_ORDERS, *map(failure_file, components)]
 
 
 @dataclass(frozen=True, slots=True)

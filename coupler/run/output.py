@@ -21,7 +21,7 @@ from quintet.coupler.run.progress import ProgressReport, Reading
 from quintet.coupler.run.restart_points import RestartPoints
 from quintet.coupler.run.signals import StopRequest
 from quintet.coupler.run.snapshots import save
-from quintet.coupler.scene.scene import Scene
+from quintet.coupler.scene.scene import OutputSettings, Scene
 from quintet.interfaces.component import Fields
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.ports import only_fields
@@ -32,6 +32,21 @@ WALLS = "walls."  # what fields of walls begin with, beside those of the view
 # started again.
 SNAPSHOT_INTERVAL, OFTEN, RESTARTABLE = 600.0, 60.0, 5.0
 COST = 50.0  # times as long as a snapshot takes is there none after it
+
+
+def lay_stops(output: OutputSettings, windows: Windows) -> tuple[int, int, int]:
+    """Have windows end where output is due; return the ticks between views, totals, snapshots."""
+    tick = windows.tick
+    views, totals, snapshots = (
+        in_ticks(time, tick) if time else 0
+        for time in (output.interval, output.totals, output.snapshots)
+    )
+    # Rows of the ledger come at the windows' ends: to watch a run must not change its steps.
+    windows.stops = [time for time in (views, snapshots) if time]
+    # A picture of a time beyond the run's end shows its last state.
+    marks = (min(in_ticks(time, tick), windows.end) for time in output.pictures if time)
+    windows.marks = tuple(dict.fromkeys(marks))
+    return views, totals, snapshots
 
 
 class OutputWriter:
@@ -71,16 +86,7 @@ class OutputWriter:
 
     def plan(self, windows: Windows) -> None:
         """See `Observer.plan`."""
-        output, tick = self.scene.file.output, windows.tick
-        self._views, self._totals, self._snapshots = (
-            in_ticks(time, tick) if time else 0
-            for time in (output.interval, output.totals, output.snapshots)
-        )
-        # Rows of the ledger come at the windows' ends: to watch a run must not change its steps.
-        windows.stops = [time for time in (self._views, self._snapshots) if time]
-        # A picture of a time beyond the run's end shows its last state.
-        marks = (min(in_ticks(time, tick), windows.end) for time in output.pictures if time)
-        windows.marks = tuple(dict.fromkeys(marks))
+        self._views, self._totals, self._snapshots = lay_stops(self.scene.file.output, windows)
         self._windows = windows
 
     def begin(self, coupling: Coupling, described: Mapping[str, Fields]) -> None:

@@ -43,6 +43,7 @@ def headline(scene: Scene, outcome: dict[str, Any]) -> dict[str, Any]:
         **outcome,
         "machine": machine(),
         "command": shlex.join(["quintet", "run", *run_arguments(**scene.asked)]),
+        "asked": scene.asked,
     }
 
 

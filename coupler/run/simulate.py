@@ -232,8 +232,11 @@ class ActiveRun:
         if not (fault := self.outcome.get("fault")) or isinstance(error, DiskError):
             return
         # Left out of runs that do not fail.
+        from quintet.coupler.run import failed_orders
         from quintet.coupler.run.blow_up import write_neighbourhood
 
+        with contextlib.suppress(DiskError):  # only `quintet debug` needs them
+            failed_orders.write(self.folder, self.participants)
         if not isinstance(error, ComponentFailed):
             return
         time, headline = self.writer.time, self.scene.headline

@@ -139,8 +139,8 @@ def states(coupling: Coupling) -> dict[str, Any]:
     return {"own": coupling.save(), "groups": groups}
 
 
-def restore(coupling: Coupling, judgement: Judgement, path: Path) -> None:
-    """Bring a coupling whose ports are joined to a snapshot."""
+def restore_states(coupling: Coupling, path: Path) -> None:
+    """Bring a coupling whose ports are joined, and its components, to a snapshot."""
     with _read(path) as file:
         tick = _get(file, "tick")
         if tick != coupling.windows.tick:
@@ -157,6 +157,12 @@ def restore(coupling: Coupling, judgement: Judgement, path: Path) -> None:
             group = coupling.members[name]
             assert isinstance(group, Group)
             group.load(saved)
+
+
+def restore(coupling: Coupling, judgement: Judgement, path: Path) -> None:
+    """Bring a run whose ports are joined to a snapshot."""
+    restore_states(coupling, path)
+    with _read(path) as file:
         coupling.ledger.load(_get(file, "ledger"))
         judgement.load(_get(file, "judgement"))
         for name, cost in _get(file, "costs").items():
@@ -186,20 +192,25 @@ def latest(folder: Path, quietly: bool = False) -> Path:
     )
 
 
+def asked_of(path: Path) -> dict[str, Any]:
+    """What was asked for in the run of a snapshot: a scene, and what changes it."""
+    with _read(path) as file:
+        return dict(_get(file, "asked"))
+
+
 def scene_of(path: Path, transport: str) -> Scene:
     """Read the scene of a snapshot as it was asked for, over another transport if one is given."""
-    with _read(path) as file:
-        asked = _get(file, "asked")
+    asked = asked_of(path)
     return load(**{**asked, "transport": transport or asked["transport"]})
 
 
-def check_same(scene: Scene, folder: Path) -> None:
+def check_same(scene: Scene, folder: Path, command: str = "--resume") -> None:
     """Refuse to go on with a scene that is not the one that began; cores may differ."""
     before, now = _without_cores(parse(folder / "scene.toml")), _without_cores(scene.resolved)
     keys = [key for key in {**before, **now} if key not in FREE]
     for key in (key for key in keys if before.get(key) != now.get(key)):
         raise SceneError(
-            f"--resume {folder}: the scene must be the one that began; {key} has changed. Undo "
+            f"{command} {folder}: the scene must be the one that began; {key} has changed. Undo "
             "the change, or run the scene again."
         )
 
@@ -211,6 +222,12 @@ def _without_cores(scene: Mapping[str, Any]) -> dict[str, Any]:
         for name, table in scene["components"].items()
     }
     return {**scene, "components": components}
+
+
+def windows_of(path: Path) -> dict[str, int]:
+    """Windows that each component had done when a snapshot was made."""
+    with _read(path) as file:
+        return {name: int(done) for name, done in _get(file, "windows").items()}
 
 
 def file_sizes(path: Path) -> tuple[int, dict[str, int]]:
