@@ -13,6 +13,7 @@ from quintet.coupler.launch.ranks_probe import RanksProbe
 from quintet.coupler.scene.scene import Scene
 from quintet.interfaces.lines.message import Message
 from quintet.interfaces.serving.process import log_of_rank
+from quintet.interfaces.serving.serve import sendable
 
 
 def settings(scene: Scene, name: str) -> dict[str, Any]:
@@ -31,9 +32,9 @@ def probe_of(
     """Make what watches a component; with a folder, its exit status is written there."""
     plan = scene.components[name]
     if plan.ranks > 1:
-        return RanksProbe(name, awaited=awaited)
+        return RanksProbe(name, awaited=awaited, by_hand=awaited)
     exits = exit_files(folder, name, 1, 0)[0] if folder else None
-    return ProcessProbe(name, awaited=awaited, exit_file=exits)
+    return ProcessProbe(name, awaited=awaited, by_hand=awaited, exit_file=exits)
 
 
 def accept(
@@ -72,6 +73,8 @@ def identify(
         raise ComponentFailed(name, 0, said)
     log = log_of(folder, name)
     find_process(probe, header, log)
+    if probe.host:
+        probe.host.name = sendable(str(header.get("host")))[:80]
     if isinstance(probe, RanksProbe):
         exits = exit_files(folder, name, count, first)
         for rank, (about, path) in enumerate(zip([header, *others], exits, strict=True)):

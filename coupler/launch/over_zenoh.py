@@ -24,11 +24,11 @@ from quintet.interfaces.errors import LineError, QuintetError, SceneError
 from quintet.interfaces.lines import join_secret
 from quintet.interfaces.lines.access import access, common_name
 from quintet.interfaces.lines.admission import Admission
-from quintet.interfaces.lines.endpoint import Security, free_port
+from quintet.interfaces.lines.endpoint import Security, free_port, on_loopback
 from quintet.interfaces.lines.foreign_messages import ForeignMessages
 from quintet.interfaces.lines.frame_codes import topic_of
 from quintet.interfaces.lines.transport import REPEAT, WatchedLine
-from quintet.interfaces.lines.zenoh import Session, ZenohLine
+from quintet.interfaces.lines.zenoh import LEASE, LEASE_BETWEEN_HOSTS, Session, ZenohLine
 
 JOINING_BY_HAND = 3600.0  # s until a component says hello that somebody starts elsewhere
 ABORTING = 0.2  # s for components to end by themselves when a run fails
@@ -50,6 +50,7 @@ class OverZenoh:
             name: [secrets.token_hex(16) for _ in range(1 + scene.file.restarts)]
             for name in scene.components
         }
+        self.several_hosts = bool(scene.elsewhere) and not on_loopback(self.endpoint)
         try:
             self.session = self._listen()
         except LineError as error:
@@ -65,6 +66,7 @@ class OverZenoh:
             if scene.security and kinds.keys() - awaited.keys():
                 require_reachable(self.endpoint, scene.security)
             waits = {name: self._join(name) for name in scene.components}
+            self.admission.open()  # not before, or who joins early gets a secret of nobody
             for name, wait_for_partner in waits.items():
                 seconds = JOINING_BY_HAND if name in scene.elsewhere else LONGEST_WAIT
                 hello = self.participants[name].await_hello(seconds, wait_for_partner)
@@ -82,7 +84,8 @@ class OverZenoh:
         elif self.scene.elsewhere:
             for name in self.scene.elsewhere:  # before anybody can ask
                 join_secret.write(self.endpoint, name, self.secrets[name][0])
-        return Session(self.endpoint, True, "coupler", self.scene.security, None, rights)
+        lease = LEASE_BETWEEN_HOSTS if self.several_hosts else LEASE
+        return Session(self.endpoint, True, "coupler", self.scene.security, None, lease, rights)
 
     def _join(self, name: str) -> Callable[[float], None]:
         """Start a component, or await it; return what waits until it is connected."""
@@ -127,18 +130,28 @@ class OverZenoh:
 
     def _begin(self, name: str, session: Session, secret: str) -> ComponentProcess:
         """Start a process of a component, or await it, with a line to it."""
-        line, mark = ZenohLine(session, self.run, name), secrets.token_hex(8)
+        awaited, mark = name in self.scene.elsewhere, secrets.token_hex(8)
+        probe = self.probes[name] = probe_of(self.scene, name, awaited=awaited)
+        line = self._open_line(name, session, probe)
         if self.scene.file.restarts:
             line.repeat_after = REPEAT
         self.disturbance.wire(name, line)
-        awaited = name in self.scene.elsewhere
-        probe = self.probes[name] = probe_of(self.scene, name, awaited=awaited)
         if awaited:
             command = join_command(self.scene, name, self.endpoint)
             print(f"{name} is awaited: {command}", flush=True)
             return ComponentProcess(line, probe, self.scene.patience(name), mark)
         self._start(name, probe, secret, mark)
         return ComponentProcess(line, probe, LONGEST_WAIT, mark)
+
+    def _open_line(self, name: str, session: Session, probe: ProcessProbe) -> ZenohLine:
+        if not (probe.by_hand and self.several_hosts):
+            return ZenohLine(session, self.run, name)
+        # Only runs with components on other hosts watch these.
+        from quintet.coupler.launch.remote_host import RemoteHost, line_to
+
+        line = line_to(session, self.run, name)
+        probe.host = RemoteHost(session, line)
+        return line
 
     def _start(self, name: str, probe: ProcessProbe, secret: str, mark: str) -> None:
         scene, folder = self.scene, self.folder
@@ -176,7 +189,13 @@ class OverZenoh:
         end_marked(RUN, self.run)
         for participant in self.participants.values():
             participant.line.close()
-        self.session.close()
+        if self.several_hosts:
+            # Only runs with components on other hosts need it.
+            from quintet.coupler.launch.remote_host import close_within
+
+            close_within(self.session)
+        else:
+            self.session.close()
         if not self.scene.security:
             join_secret.remove(self.endpoint, self.scene.elsewhere)
 

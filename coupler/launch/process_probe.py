@@ -9,10 +9,14 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import psutil
 
 from quintet.interfaces.lines.process_status import running
+
+if TYPE_CHECKING:
+    from quintet.coupler.launch.remote_host import RemoteHost
 
 BUSY = 0.02  # share of a core below which a process does not compute
 INTERVAL = 0.5  # s between two readings of processor times
@@ -54,7 +58,10 @@ class ProcessProbe:
     exit_file: Path | None = None
     shared: list[str] = field(default_factory=list)
     where: Callable[[], str] = lambda: ""
+    by_hand: bool = False  # whether somebody has started it, or is to do so
     awaited: bool = False  # until somebody joins by hand under its name
+    host: "RemoteHost | None" = None  # where it runs, if that may be another one than the coupler's
+    given_up: str = ""  # why, if it cannot be ended from here
     activity: str = ""  # what it did since the last reading
     _read_at: float = 0.0
     _times: tuple[float, float] = (0.0, 0.0)  # s, of its own and of its children
@@ -65,6 +72,8 @@ class ProcessProbe:
 
     def alive(self) -> bool:
         """Whether the process still runs."""
+        if self.given_up:
+            return False
         if self.process:
             return self.process.poll() is None
         if self.pid:
@@ -80,6 +89,8 @@ class ProcessProbe:
 
     def ending(self) -> str:
         """Describe how the process ended."""
+        if self.given_up:
+            return self.given_up
         code = self.process.returncode if self.process else self._written()
         who = f"process {self.pid}" if self.pid else "its process, not on the coupler's host,"
         if code is None:
@@ -157,7 +168,7 @@ class ProcessProbe:
         if self.awaited:
             return f"nobody has joined as {self.name} yet"
         if not self.pid:
-            return "its process is on another host"
+            return f"its process is on {self.host.name if self.host else 'another host'}"
         return f"process {self.pid} is {self.activity or 'running'}"
 
     def end(self, grace: float) -> None:
@@ -181,6 +192,12 @@ class ProcessProbe:
         if self.pid and self.alive():
             with contextlib.suppress(ProcessLookupError):
                 os.kill(self.pid, signal.SIGKILL)
+
+    def give_up(self, cause: str) -> None:
+        """Kill the process; count one that cannot be killed from here as dead."""
+        if not self.pids():
+            self.given_up = cause
+        self.kill()
 
 
 def _processor_times(process: psutil.Process) -> tuple[float, float]:

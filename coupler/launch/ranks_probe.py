@@ -31,12 +31,12 @@ class RanksProbe(ProcessProbe):
     def alive(self) -> bool:
         """Whether all processes still run."""
         launched = self.process is None or self.process.poll() is None
-        return launched and all(rank.alive() for rank in self.ranks)
+        return launched and not self.given_up and all(rank.alive() for rank in self.ranks)
 
     def ending(self) -> str:
         """Describe how the first that ended did; others may end as they miss it."""
         ended = [rank for rank in self.ranks if not rank.alive() or rank.ended_at() < math.inf]
-        if not ended:
+        if not ended or self.given_up:
             return ProcessProbe.ending(self)
         first = min(ended, key=ProcessProbe.ended_at)
         return f"{first.name}: {first.ending()}"

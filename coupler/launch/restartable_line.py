@@ -70,7 +70,11 @@ class RestartableLine:
     def send(self, header: Mapping[str, Any], fields: Fields) -> None:
         """See `Line.send`; if the process has died, that is noticed when the answer is awaited."""
         self._log.add(header, fields)
-        self._process.line.send(header, fields)
+        try:
+            self._process.line.send(header, fields)
+        except LineError:
+            if not self._process.is_over():
+                raise
 
     def receive(self, seconds: float, expected: Shapes | None = None) -> Message:
         """See `Line.receive`."""
@@ -114,7 +118,8 @@ class RestartableLine:
         self._process.end()
         self.restarts.used += 1
         number = f"restart {self.restarts.used} of {self.restarts.limit}"
-        say(f"{self.name}: {self._lost}; it is started again ({number})")
+        begun = "awaited" if self._process.probe.by_hand else "started"
+        say(f"{self.name}: {self._lost}; it is {begun} again ({number})")
 
     def _take_over(self) -> None:
         """Bring another process to where the one before it died."""

@@ -83,7 +83,8 @@ class Watched:
         self.probe.begin()
         usual = USUAL * self.participant.timing.usual
         if self.participant.built:
-            self.end_at = usual + self.patience
+            silence = self.probe.host.noticed_within if self.probe.host else 0.0
+            self.end_at = usual + max(self.patience, silence)
             self.tell_at = min(usual + EXTRA, self.end_at)
         else:
             begun = self.probe.pid or self.participant.order  # else it is awaited from elsewhere
@@ -220,7 +221,8 @@ class Watchdog:
             self._check_stop(now)
             for component in list(self._all.values()):
                 self._check_death(component, now)
-                self.check_wait(component, passed)
+                if not self._check_host(component):
+                    self.check_wait(component, passed)
 
     def _check_stop(self, now: float) -> None:
         if not self.stop():
@@ -248,6 +250,18 @@ class Watchdog:
             joined = "" if first.participant.order else "did not join: "
             ending = first.probe.ending() + first.restarts.remark()
             self.fail(first, joined + ending)
+
+    def _check_host(self, component: Watched) -> bool:
+        """Tell whether the host of a component is silent; give it up when that takes too long."""
+        host = component.probe.host
+        if host is None or component.probe.given_up:
+            return False
+        if news := host.look(component.patience):
+            say(f"{component.participant.name}: {news}")
+            component.begin(component.since)  # when the host is back, its patience begins again
+        if host.silent > host.noticed_within + component.patience:
+            self.fail(component, f"host {host.name} does not answer: {host.said()}")
+        return host.silent > 0.0
 
     def check_wait(self, component: Watched, passed: float) -> None:
         """Tell of a component that keeps the others waiting; end it if that takes too long."""
@@ -304,10 +318,12 @@ class Watchdog:
     def fail(self, component: Watched, cause: str, calls: str = "") -> None:
         """Decide that the run ends, as a component has failed, or that its process does."""
         participant = component.participant
-        if component.restarts.left and component.probe.process:  # another can take over
-            if component.probe.alive():
-                say(f"{participant.name} {cause}")
-                component.probe.kill()
+        probe = component.probe
+        if component.restarts.left and (probe.process or probe.by_hand):  # another can take over
+            if probe.alive():
+                if probe.pids():
+                    say(f"{participant.name} {cause}")
+                probe.give_up(cause)
             return
         self._judge(ComponentFailed(participant.name, participant.window, cause, calls))
 

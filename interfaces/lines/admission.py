@@ -48,16 +48,22 @@ class Admission:
         self.joined: dict[str, str] = {}  # who, by name
         self._secrets: dict[str, str] = {}
         self._lock = threading.Lock()
+        self._opened = threading.Event()
         self._requests = [session.declare_queryable(f"{JOIN}/*", self._answer)]
         if self.secured:
             keys = [f"{ADMIT}/{name}" for name in awaited]
             self._requests += [session.declare_queryable(key, self._answer) for key in keys]
+
+    def open(self) -> None:
+        """Begin to answer; who has asked before is waiting."""
+        self._opened.set()
 
     def _answer(self, query: Any) -> None:
         key = str(query.key_expr)
         payload = query.payload.to_bytes() if query.payload is not None else b""
         admits = self.secured and key.startswith(f"{ADMIT}/")
         name = key.removeprefix(f"{ADMIT if admits else JOIN}/")
+        self._opened.wait(ANSWERING)
         with self._lock:
             refusal, secret = self.refusal(name, payload, admits), self._secrets.get(name, "")
         if refusal:
@@ -95,8 +101,6 @@ class Admission:
             return refusal
         if name in self.joined:
             return f"{name} has joined already ({self.joined[name]}). End the second one."
-        if name not in self._secrets:
-            return "the run does not await it yet. Join again."
         self.joined[name] = asking.who
         return ""
 

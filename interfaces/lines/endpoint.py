@@ -42,6 +42,12 @@ def check_endpoint(endpoint: str, security: Security | None) -> None:
         raise LineError(f"endpoint {endpoint!r}: tls needs authority, certificate and key.")
 
 
+def on_loopback(endpoint: str) -> bool:
+    """Whether an endpoint is reached from its own host only."""
+    match = ENDPOINT.fullmatch(endpoint)
+    return match is not None and match[2] in LOOPBACK
+
+
 def require_free(endpoint: str) -> None:
     """Refuse an endpoint at which this machine cannot listen: another run does, or it is not its.
 

@@ -17,7 +17,7 @@ from zenoh import handlers
 from quintet.interfaces.errors import LineError
 from quintet.interfaces.lines.access import common_name
 from quintet.interfaces.lines.admission import ask_to_join
-from quintet.interfaces.lines.endpoint import Security, check_endpoint
+from quintet.interfaces.lines.endpoint import Security, check_endpoint, on_loopback
 from quintet.interfaces.lines.frame_codes import CODE, DroppedFrames, FrameCodes, topic_of
 from quintet.interfaces.lines.message import Frame
 from quintet.interfaces.lines.reach import Obstacle, await_listener, obstacle
@@ -33,22 +33,31 @@ STARTING = 10.0  # s that a run may take until it listens
 DOUBTFUL = 3_000  # ms, where something listens that does not answer as zenoh does
 LARGEST = 1 << 30  # bytes of a message; zenoh drops larger ones without a word
 LEASE = 60_000  # ms without a keep-alive; shorter ones expire while a solver uses all cores
+# ms, between hosts: with this connection messages would be lost, which TCP repeats after a cut.
+LEASE_BETWEEN_HOSTS = 600_000
+KEEP_ALIVE = 15_000  # ms without a message until a keep-alive is sent
+# ms, over TLS: zenoh does not flush, and the end of a message that the network does not take at
+# once stays in the buffer of TLS until something else is sent.
+KEEP_ALIVE_TLS = 100
+REPLACED = "~replaced"  # in the place of a name: this process takes no part any more
 
 
 def configuration(
     endpoint: str,
     listens: bool,
     security: Security | None,
+    lease: int = LEASE,
     access: Mapping[str, Any] | None = None,
 ) -> zenoh.Config:
-    """Build the settings of a session at one endpoint, and nowhere else."""
+    """Build the settings of a session at one endpoint, and nowhere else; the lease is in ms."""
     check_endpoint(endpoint, security)
     settings: dict[str, Any] = {
         "mode": "peer",
         "scouting/multicast/enabled": False,
         "scouting/gossip/enabled": False,
         "transport/shared_memory/enabled": False,
-        "transport/link/tx/lease": LEASE,
+        "transport/link/tx/lease": lease,
+        "transport/link/tx/keep_alive": max(4, lease // KEEP_ALIVE),
         "transport/link/rx/max_message_size": LARGEST,
         "transport/link/tx/queue/size/data": WAITING,
         "transport/link/tx/queue/congestion_control/block/wait_before_close": BLOCKED,
@@ -67,6 +76,7 @@ def configuration(
             "connect_certificate": security.certificate,
             "connect_private_key": security.key,
         }
+        settings["transport/link/tx/keep_alive"] = max(4, lease // KEEP_ALIVE_TLS)
     if access is not None:
         settings["access_control"] = access
     config = zenoh.Config()
@@ -90,13 +100,16 @@ class Session:
         me: str,
         security: Security | None,
         secret: str | None = OPEN,
+        lease: int = LEASE,
         access: Mapping[str, Any] | None = None,
     ) -> None:
         self.me = me
+        self._replaced: list[Any] = []  # tokens that tell former processes so; shared by `under`
+        self.signs: Any = None  # a session that gives signs of life, closed with this one
         doubt = Obstacle() if listens else obstacle(endpoint, security)
         if doubt.text and doubt.certain:
             raise LineError(f"endpoint {endpoint}: {me} cannot reach it: {doubt.text}")
-        config = configuration(endpoint, listens, security, access)
+        config = configuration(endpoint, listens, security, lease, access)
         if doubt.text:
             config.insert_json5("connect/timeout_ms", json.dumps(DOUBTFUL))
         try:
@@ -127,7 +140,12 @@ class Session:
         return other
 
     def leave(self) -> None:
-        """Take no part any more under the present secret; the connection stays."""
+        """Take no part any more under the present secret; the connection stays.
+
+        Who is still there under this secret ends when it learns so.
+        """
+        token = self.zenoh.liveliness().declare_token(f"{self.root}/alive/{REPLACED}")
+        self._replaced.append(token)
         self._token.undeclare()
         self._liveliness.undeclare()
 
@@ -142,8 +160,10 @@ class Session:
 
     def close(self) -> None:
         """Close the session; all messages were delivered, or the run is over."""
-        with contextlib.suppress(zenoh.ZError):
-            self.zenoh.close()
+        for session in (self.zenoh, self.signs):
+            with contextlib.suppress(zenoh.ZError):
+                if session:
+                    session.close()
 
 
 class ZenohLine(FramedLine):
@@ -207,7 +227,14 @@ class ZenohLine(FramedLine):
         return None
 
     def _broken(self) -> str:
-        return f"{self.other} is gone" if self.partner_has_left() else ""
+        if not self.partner_has_left():
+            return ""
+        if REPLACED in self.session.alive:
+            return (
+                "the run has given up this process, which did not answer in time; another one "
+                f"takes its place as {self.name}"
+            )
+        return f"{self.other} is gone"
 
     def partner_has_left(self) -> bool:
         """Whether the other side has ended, or is not connected any more."""
@@ -216,9 +243,12 @@ class ZenohLine(FramedLine):
 
     def leave(self) -> None:
         """Close this line, the only one of its session's secret; the connection stays."""
+        self._undeclare()
+        self.session.leave()
+
+    def _undeclare(self) -> None:
         self._inbox.undeclare()
         self._outbox.undeclare()
-        self.session.leave()
 
     def close(self) -> None:
         """See `Line.close`."""
@@ -245,7 +275,8 @@ def join(
     It may be started a little before the run.
     """
     await_listener(endpoint, STARTING, say)
-    session = Session(endpoint, False, name, security, None)
+    lease = LEASE if on_loopback(endpoint) else LEASE_BETWEEN_HOSTS
+    session = Session(endpoint, False, name, security, None, lease)
     try:
         certificate = common_name(security.certificate) if security else ""
         session.enter(ask_to_join(session.zenoh, endpoint, name, about, certificate))

@@ -15,7 +15,7 @@ import psutil
 from quintet.interfaces.component import Component, Resources, make
 from quintet.interfaces.errors import LineError, QuintetError, SceneError
 from quintet.interfaces.libraries import require
-from quintet.interfaces.lines.endpoint import Security
+from quintet.interfaces.lines.endpoint import Security, on_loopback
 from quintet.interfaces.lines.transport import Line
 from quintet.interfaces.manifest import Manifest, find, look_in
 from quintet.interfaces.params import read
@@ -205,6 +205,11 @@ def over_zenoh(options: argparse.Namespace, hello: dict[str, Any]) -> Line:
         line = join(
             options.at, options.name, hello, security, lambda text: say(f"{options.name}: {text}")
         )
+        if not on_loopback(options.at):
+            # Only components on other hosts give signs of life.
+            from quintet.interfaces.lines.signs import Signs
+
+            line.session.signs = Signs(options.at, security, line.session.root, options.name)
     line.session.dropped.tell = lambda text: say(f"{options.name}: {text}")
     return line
 

@@ -117,6 +117,12 @@ def test_the_coupler_of_several_processes_imports_no_solver(tmp_path):
     restarts = {f"quintet.coupler.launch.{part}" for part in ("restartable_line", "order_log")}
     assert not restarts & names
     assert not {name for name in names if name.startswith("quintet.coupler.chaos")}
+    hosts = {
+        "coupler.launch.remote_host",
+        "interfaces.lines.signs",
+        "interfaces.lines.line_elsewhere",
+    }
+    assert not {f"quintet.{part}" for part in hosts} & names
 
 
 @pytest.fixture(scope="module")

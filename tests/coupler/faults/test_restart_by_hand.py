@@ -76,6 +76,22 @@ def test_who_joined_by_hand_and_died_may_join_again(by_hand):
     assert same(scene.run.folder, alone.folder)
 
 
+def test_who_joined_by_hand_and_stands_still_is_replaced(by_hand):
+    scene = by_hand("--set", "restarts=1")
+    first = scene.join()
+    scene.wait_for_step(1)
+    os.kill(first.pid, signal.SIGSTOP)
+    assert first.wait(20.0) == -signal.SIGKILL
+    other = scene.join()
+    assert scene.run.wait() == 0, scene.run.err
+    assert other.wait(10.0) == 0
+    assert "pong stopped responding: process" in scene.run.err
+    assert "it is awaited again (restart 1 of 1)" in scene.run.err
+    alone = Started(scene.scene, out=scene.scene.parent / "alone")
+    assert alone.wait() == 0
+    assert same(scene.run.folder, alone.folder)
+
+
 def test_who_does_not_join_again_within_the_patience_ends_the_run(by_hand):
     scene = by_hand("--set", "restarts=1", "--set", "patience=2.0")
     first = scene.join()

@@ -37,7 +37,7 @@ def coupler(endpoint, files):
     rights = access(
         common_name(mine.certificate), {name: [topic_of(text)] for name, text in SECRETS.items()}
     )
-    session = Session(endpoint, True, "coupler", mine, None, rights)
+    session = Session(endpoint, True, "coupler", mine, None, access=rights)
     session.foreign = ForeignMessages(session.zenoh, session.dropped)
     awaited = dict.fromkeys(SECRETS, "toy")
     session.admission = Admission(session.zenoh, awaited, (), session.foreign, endpoint)

@@ -2,13 +2,14 @@
 
 import json
 import time
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
 
 from quintet.interfaces.errors import LineError
 from quintet.interfaces.lines import join_secret
-from quintet.interfaces.lines.admission import LONGEST_REQUEST, Admission
+from quintet.interfaces.lines.admission import LONGEST_REQUEST, Admission, ask_to_join
 from quintet.interfaces.lines.endpoint import free_port
 from quintet.interfaces.lines.foreign_messages import TOO_MANY, ForeignMessages
 from quintet.interfaces.lines.zenoh import Session, ZenohLine, configuration, connect, join
@@ -33,6 +34,7 @@ def admission(session, endpoint, foreign, others=()):
     """Of a run that awaits `pong`."""
     opened = Admission(session.zenoh, {"pong": "toy"}, others, foreign, endpoint)
     opened.await_join("pong", SECRET)
+    opened.open()
     return opened
 
 
@@ -209,3 +211,18 @@ def test_a_join_may_begin_before_its_run(endpoint, monkeypatch):
     monkeypatch.setattr("quintet.interfaces.lines.zenoh.STARTING", 0.3)
     with pytest.raises(LineError, match="nobody listens on port"):
         join(endpoint, "pong", WHO, None, said.append)
+
+
+def test_who_asks_before_the_run_has_begun_is_answered_when_it_has(endpoint):
+    session = Session(endpoint, True, "coupler", None, SECRET)
+    foreign = ForeignMessages(session.zenoh)
+    waiting = Admission(session.zenoh, {"pong": "toy"}, (), foreign, endpoint)
+    waiting.await_join("pong", "a new secret")
+    with ThreadPoolExecutor() as pool:
+        asked = pool.submit(ask_to_join, session.zenoh, endpoint, "pong", WHO)
+        time.sleep(0.3)
+        assert not asked.done()
+        waiting.open()
+        assert asked.result(5.0) == "a new secret"
+    session.close()
+    join_secret.remove(endpoint, ["pong"])
