@@ -34,9 +34,7 @@ SPIN = 3e-4  # s of polling without sleep: longer than a round trip, shorter tha
 SLEEP = 2e-5  # s, the first sleep
 LONGEST_SLEEP = 1e-3  # s
 SETTLING = 0.05  # s from a connection's end until the system knows how the process ended
-REPEAT = (
-    5.0  # s without an answer until the last message is sent again; then twice as long, and so on
-)
+REPEAT = 5.0  # s without an answer until the last message is sent again; then 10 s, and so on
 
 
 class Line(Protocol):

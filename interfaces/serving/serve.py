@@ -66,9 +66,8 @@ class Server:
     ) -> None:
         self.component, self.build_seconds = component, build_seconds
         self.is_alone = spread is None  # whether it has one rank
-        self._spread = spread or (
-            lambda state: state
-        )  # gives a saved state to all ranks of the component
+        # Gives a saved state to all ranks of the component.
+        self._spread = spread or (lambda state: state)
         self.guard = OrderGuard(name)
         self.inputs = Inputs(component.takes)
         self.outputs = self.outputs_class(component.gives, component.gives_integrals)
