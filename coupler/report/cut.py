@@ -25,7 +25,9 @@ def depth_of_bodies(view: Sequence[Shown]) -> float | None:
     The view is turned (`Viewpoint.turned_view`): its second axis points into the picture.
     """
     bodies = [_depths(shown) for shown in view if is_body(shown)]
-    clouds = [shown for shown in view if not is_body(shown) and not is_field(shown)]
+    clouds = [
+        shown for shown in view if len(shown.points) and not (is_body(shown) or is_field(shown))
+    ]
     sizes = [(np.ptp(shown.points[:, 1]), spacing(shown.points)) for shown in clouds]
     if not bodies or not any(depth > THICK * size > 0.0 for depth, size in sizes):
         return None

@@ -1,5 +1,6 @@
 """What components show at the times of pictures, read from their view files."""
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -124,7 +125,7 @@ def quantity(field: str, array: Array, unit: str) -> Quantity:
 
 def magnitude(array: Array) -> Array:
     """Values (n,) of scalars as they are, of vectors their length."""
-    flat = array.reshape(len(array), -1)
+    flat = array.reshape(len(array), math.prod(array.shape[1:]))  # also of no rows
     return flat[:, 0] if flat.shape[1] == 1 else np.linalg.norm(flat, axis=1)
 
 

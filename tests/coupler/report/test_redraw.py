@@ -84,6 +84,11 @@ def test_a_box_hides_nothing_of_particles_in_one_plane(tmp_path):
     assert depth_of_bodies(view) is None
     deep = [view[0], read(tmp_path / "box.vtkhdf", 0.0, {})]
     assert depth_of_bodies(deep) is None, "bodies alone hide nothing"
+    empty = VtkHdf(tmp_path / "spray.vtkhdf", UNITS)
+    empty.append(0.0, {"points": np.zeros((0, 3)), "velocity": np.zeros((0, 3))})
+    empty.close()
+    spray = read(tmp_path / "spray.vtkhdf", 0.0, {})
+    assert depth_of_bodies([view[0], spray]) is None, "nothing hides nothing"
 
 
 @pytest.mark.parametrize(
