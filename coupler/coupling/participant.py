@@ -15,7 +15,7 @@ from quintet.interfaces.component import Array, Field, Fields
 from quintet.interfaces.errors import LineError, MessageError, QuintetError, SceneError
 from quintet.interfaces.lines.message import Message, Shapes, order_of, require_finite
 from quintet.interfaces.lines.transport import WatchedLine
-from quintet.interfaces.serving.serve import sendable
+from quintet.interfaces.serving.failing import sendable
 
 BEFORE = {"", "go", "describe", "sample", "bind", "prime"}  # orders in which a scene is refused
 LONGEST_WAIT = 86400.0  # s for one answer, also of a component that nobody watches

@@ -10,8 +10,9 @@ from quintet.coupler.launch.acceptance import settings
 from quintet.coupler.launch.order_log import Answer, Entry, OrderLog
 from quintet.interfaces.errors import MessageError
 from quintet.interfaces.lines.message import Message, require_finite
+from quintet.interfaces.serving.failing import failure
 from quintet.interfaces.serving.process import build
-from quintet.interfaces.serving.serve import Server, failure
+from quintet.interfaces.serving.serve import Server
 
 
 class Repetition:

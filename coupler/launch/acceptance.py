@@ -12,8 +12,8 @@ from quintet.coupler.launch.process_probe import ProcessProbe
 from quintet.coupler.launch.ranks_probe import RanksProbe
 from quintet.coupler.scene.scene import Scene
 from quintet.interfaces.lines.message import Message
+from quintet.interfaces.serving.failing import sendable
 from quintet.interfaces.serving.process import log_of_rank
-from quintet.interfaces.serving.serve import sendable
 
 
 def settings(scene: Scene, name: str) -> dict[str, Any]:

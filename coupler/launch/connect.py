@@ -22,9 +22,10 @@ from quintet.coupler.launch.watchdog import Watchdog
 from quintet.coupler.scene.scene import ComponentPlan, Scene
 from quintet.interfaces.component import Component
 from quintet.interfaces.errors import SceneError
+from quintet.interfaces.serving.failing import failure
 from quintet.interfaces.serving.malloc import keep_freed_memory
 from quintet.interfaces.serving.process import build, shared_files
-from quintet.interfaces.serving.serve import Server, answer, failure
+from quintet.interfaces.serving.serve import Server, answer
 
 
 class Connection(Protocol):

@@ -19,11 +19,12 @@ from quintet.interfaces.lines.endpoint import Security, on_loopback
 from quintet.interfaces.lines.transport import Line
 from quintet.interfaces.manifest import Manifest, find, look_in
 from quintet.interfaces.params import read
+from quintet.interfaces.serving.failing import failure
 from quintet.interfaces.serving.log_stream import print_into_logs
 from quintet.interfaces.serving.malloc import keep_freed_memory
 from quintet.interfaces.serving.notices import listen, notice
 from quintet.interfaces.serving.orders import check_order
-from quintet.interfaces.serving.serve import LONGEST_WAIT, Server, failure, serve
+from quintet.interfaces.serving.serve import LONGEST_WAIT, Server, serve
 
 if TYPE_CHECKING:
     from quintet.interfaces.serving.ranks import Ranks

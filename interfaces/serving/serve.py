@@ -7,7 +7,6 @@ import math
 import reprlib
 import sys
 import time
-import traceback
 from collections.abc import Callable, Mapping
 from typing import Any
 
@@ -19,12 +18,11 @@ from quintet.interfaces.errors import (
     MessageError,
     OrderError,
     PortError,
-    QuintetError,
     StepError,
 )
 from quintet.interfaces.lines.message import Message, require_finite
 from quintet.interfaces.lines.transport import Line
-from quintet.interfaces.serving.failing import shown_at_failure
+from quintet.interfaces.serving.failing import failure, shown_at_failure
 from quintet.interfaces.serving.inputs import Inputs
 from quintet.interfaces.serving.order_guard import OrderGuard
 from quintet.interfaces.serving.orders import check_order
@@ -35,7 +33,6 @@ from quintet.interfaces.sums import column_sums
 Answer = tuple[dict[str, Any], Fields]
 TRIED = 1e-3  # of the stable step: the length of a step that is undone
 MOST = 1e9  # steps in a window; more would never end
-LONGEST_TEXT = 1 << 16  # characters of an error's text or traceback
 # s between two orders, in which others may build or compute; the coupler's death ends the wait.
 LONGEST_WAIT = 86400.0
 
@@ -344,32 +341,6 @@ def peak_memory() -> int:
     """Largest resident memory of this process so far [bytes]."""
     with open("/proc/self/status") as status:
         return next(1024 * int(line.split()[1]) for line in status if line.startswith("VmHWM"))
-
-
-def failure(error: BaseException) -> dict[str, Any]:
-    """Put an error into the header that tells the coupler of it."""
-    if isinstance(error, MemoryError):
-        # What the failed functions hold is released, or there is none left to tell of it.
-        traceback.clear_frames(error.__traceback__)
-    is_ours = isinstance(error, QuintetError)
-    said = str(error)
-    if isinstance(error, SystemExit):
-        said = f"asked Python to exit, with status {error.code!r}; raise an error instead"
-    return {
-        "order": "failed",
-        "error": type(error).__name__,
-        "text": sendable(said),
-        "traceback": "" if is_ours else sendable("".join(traceback.format_exception(error))),
-    }
-
-
-def sendable(text: str) -> str:
-    """Text that a header can hold: valid UTF-8, and of a long one its beginning and its end."""
-    text = text.encode("utf-8", "backslashreplace").decode("utf-8")
-    if len(text) <= LONGEST_TEXT:
-        return text
-    left_out, half = len(text) - LONGEST_TEXT, LONGEST_TEXT // 2
-    return f"{text[:half]} … {left_out} characters … {text[-half:]}"
 
 
 def answer(server: Server, line: Line, message: Message) -> bool:

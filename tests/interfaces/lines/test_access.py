@@ -43,6 +43,7 @@ def coupler(endpoint, files):
     session.admission = Admission(session.zenoh, awaited, (), session.foreign, endpoint)
     for name, secret in SECRETS.items():
         session.admission.await_join(name, secret)
+    session.admission.open()
     session.lines = {
         name: ZenohLine(session.under(secret), "r1", name) for name, secret in SECRETS.items()
     }

@@ -212,6 +212,8 @@ def test_an_answer_that_cannot_be_sent_is_the_failure_of_its_component(capsys):
     line.far.limit = 1 << 20
 
     class Large:
+        is_alone = True
+
         def handle(self, message):
             return {}, {"state": np.zeros(1 << 20)}
 
