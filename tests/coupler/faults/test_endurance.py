@@ -8,7 +8,7 @@ from endurance import FILES, endure, table
 
 MOST = {"coupler": 10.0}  # bytes a window in the second half of the windows
 MOST_OF_OTHERS = 2.0
-MOST_OF_SHORT = {"coupler": 2e6}  # bytes in the second half of 2000 windows: pools still fill
+MOST_OF_SHORT = 2e5  # bytes in the second half of 2000 windows, in which nothing is loaded late
 SPARE = 2  # descriptors that are open for a moment: a snapshot, its folder
 
 
@@ -25,10 +25,11 @@ def check_files_and_descriptors(samples, found):
 @pytest.mark.slow
 @pytest.mark.zenoh
 def test_two_thousand_windows_lose_no_descriptor_and_hold_no_memory(tmp_path):
-    samples, found = endure(tmp_path, 2000, "zenoh", restarts=True, interval=0.05)
+    # With restarts the first snapshot, after 5 s, would load what it needs in the second half.
+    samples, found = endure(tmp_path, 2000, "zenoh", interval=0.05)
     assert {"coupler", "ping", "pong", "companion"} <= set(found["processes"])
     for name, row in found["processes"].items():
-        assert row["growth"] < MOST_OF_SHORT.get(name, 2e5), table(found)
+        assert row["growth"] < MOST_OF_SHORT, f"{name}: {table(found)}"
     check_files_and_descriptors(samples, found)
     assert found["files"]["recording.h5"] > 400.0, "it is recorded"
 
