@@ -56,7 +56,7 @@ def failure(
 
 
 def check(state: State) -> None:
-    """Refuse rotations that are not finite: what is not in contact may turn for long with them."""
+    """Refuse rotations that are not finite: without contacts no step reads them."""
     rows = state.row[:-1]
     fields = {"angular velocity": state.angular_velocity, "orientation": state.orientation}
     if all(finite(array) for array in fields.values()):

@@ -83,12 +83,12 @@ def check(state: State, params: SphFluidParams) -> None:
         return
     fields = {"velocity": motion[:, :3], "pressure over squared density": motion[:, 3]}
     places = state.position_density[rows, :3]
-    advice = f"Lower courant (now {params.courant}), or look at what is around it."
+    advice = f"Lower courant (now {params.courant}), or check the surfaces near it."
     require_finite_items("particle", fields, state.identity, places, advice)
 
 
 def _origin(listed: Array, lost: Whole) -> int:
-    """Row of the particle whose listed neighbours are those that are lost: it spoilt them.
+    """Find the particle that failed first: the other lost ones are its listed neighbours.
 
     Parameters
     ----------

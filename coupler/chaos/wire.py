@@ -74,7 +74,7 @@ class Outbox:
         return self._outbox.matching_status
 
     def put(self, frame: bytes | bytearray, **more: Any) -> None:
-        """Send what is left of a frame."""
+        """Send the rest of a frame."""
         for copy in self._wire.sent(frame):
             self._outbox.put(copy, **more)
 

@@ -60,7 +60,7 @@ def certificates(options: argparse.Namespace) -> int:
         f"The run:       quintet {shlex.join(started)}\n"
         f"A component:   quintet {shlex.join(joined)}\n"
         "Copy to the host of a component authority.pem and the two files of its name only. The "
-        f"coupler admits a component only with the certificate of its name. Who has "
+        f"coupler admits a component only with the certificate of its name. Anyone who has "
         "authority.key can make further ones: keep it away from other hosts, or delete it."
     )
     return 0

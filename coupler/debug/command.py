@@ -70,7 +70,7 @@ def under(command: str, arguments: Sequence[str]) -> None:
 
 
 def headline(request: Request) -> str:
-    """Say what is repeated, from where, and who computes."""
+    """Describe the repetition: its window, its start, and which components compute."""
     name, window, first = request.component, request.window, request.first
     where = f"from {request.snapshot.name}" if request.snapshot else "from the start"
     failed = ", in which it failed" if request.fault else ""

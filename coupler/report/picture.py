@@ -170,14 +170,14 @@ def _said(picture: Picture, cut: Cut, stretch: float) -> str:
     """Where one looks from, what is cut off, and what is not drawn to scale."""
     viewpoint = picture.viewpoint
     against = "" if viewpoint.ahead > 0.0 else "against "
-    said = [f"{viewpoint.name} view {against or 'along '}{viewpoint.looks_along}"]
-    said += [cut.text] if cut.text else []
+    remarks = [f"{viewpoint.name} view {against or 'along '}{viewpoint.looks_along}"]
+    remarks += [cut.text] if cut.text else []
     if picture.displacement_scale != 1.0:
-        said.append(f"displacements drawn {picture.displacement_scale:g} times as large")
+        remarks.append(f"displacements drawn {picture.displacement_scale:g} times as large")
     if stretch > 1.0:
         upwards, across = viewpoint.labels[1][0], viewpoint.labels[0][0]
-        said.append(f"{upwards} drawn {stretch:.2g} times as long as {across}")
-    return ", ".join(said)
+        remarks.append(f"{upwards} drawn {stretch:.2g} times as long as {across}")
+    return ", ".join(remarks)
 
 
 def _ticks(figure: Any, panel: Any) -> int:

@@ -39,18 +39,18 @@ class DroppedFrames:
 
     def summary(self) -> list[str]:
         """What was dropped so far, in sentences."""
-        said = []
+        sentences = []
         if self.invalid:
-            said.append(
+            sentences.append(
                 f"{self.invalid} message(s) on keys of the run had no valid authentication code "
                 "and were dropped: they were damaged on the way, or another program sent them."
             )
         if self.repeated:
-            said.append(
+            sentences.append(
                 f"{self.repeated} message(s) on keys of the run arrived a second time and were "
                 "dropped."
             )
-        return said
+        return sentences
 
     def report(self) -> None:
         """Tell the summary, unless it was told a short while ago."""
