@@ -4,14 +4,11 @@ The computed curve is ``scale * (recorded + offset)`` of one item of a recorded 
 measured, and the same measure is taken of the reference: a number, or a curve in a file.
 """
 
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import Annotated, Literal
 
 import pydantic
 
 from quintet.interfaces.params import NotNegative, Number, Positive, parameters
-
-if TYPE_CHECKING:  # checking a scene reads no recording: h5py is not loaded for it
-    pass
 
 Measure = Literal[
     "rms", "relative_rms", "crossing", "at", "max", "min", "mean", "integral", "period", "decay"
