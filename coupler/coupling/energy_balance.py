@@ -6,6 +6,8 @@ What is done on components from outside of the run is no rise, and what they los
 from collections.abc import Mapping
 from typing import Any
 
+from quintet.coupler.coupling.saved_values import like
+
 KINDS = ("kinetic", "potential", "internal")
 # Of the largest energy that a component has: what changes by less is rounding, not turned over.
 NEGLIGIBLE = 1e-6
@@ -81,6 +83,14 @@ class EnergyBalance:
 
     def load(self, state: Mapping[str, Any]) -> None:
         """Come back to what was saved."""
-        self._range = {key: list(pair) for key, pair in state["range"].items()}
-        self._sums, self._times = list(state["sums"]), int(state["times"])
-        self._masses = {name: list(pair) for name, pair in state["masses"].items()}
+        self._range = {key: _numbers(pair, 2) for key, pair in state["range"].items()}
+        self._sums = _numbers(state["sums"], 3) if state["sums"] else []
+        self._times = like(0, state["times"])
+        self._masses = {name: _numbers(pair, 2) for name, pair in state["masses"].items()}
+
+
+def _numbers(values: Any, count: int) -> list[float]:
+    """So many numbers of a snapshot, in which anything may be."""
+    if len(values) != count:
+        raise ValueError(f"{count} numbers expected, found {len(values)}")
+    return [like(0.0, value) for value in values]

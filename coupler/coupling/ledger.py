@@ -20,6 +20,7 @@ from quintet.coupler.coupling.motion_audit import MotionAudit
 from quintet.coupler.coupling.pairing import INTEGRAL
 from quintet.coupler.coupling.run_balance import RunBalance
 from quintet.coupler.coupling.run_warnings import RunWarnings
+from quintet.coupler.coupling.saved_values import attributes_like, require_same_keys
 from quintet.coupler.files.table_file import TableFile
 from quintet.interfaces.component import Array, Fields
 from quintet.interfaces.rotation import vector_between
@@ -238,9 +239,13 @@ class Ledger:
 
     def load(self, state: Mapping[str, Any]) -> None:
         """Come back to saved books."""
+        require_same_keys(self.accounts, {row["link"]: row for row in state["accounts"]})
         for row in state["accounts"]:
-            self.accounts[row["link"]] = Account(**{**row, "impulse": np.array(row["impulse"])})
+            values = {**row, "impulse": np.array(row["impulse"])}
+            self.accounts[row["link"]] = Account(**attributes_like(Account(""), values))
         self.totals = dict(state["totals"])
+        for sums in self.totals.values():
+            np.hstack([np.asarray(value, dtype=float) for value in sums.values()])
         self.energy.load(state["energy"])
         self.warnings.load(state["warnings"])
         self._balance.load(state["balance"])

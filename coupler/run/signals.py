@@ -55,14 +55,15 @@ class StopRequest:
     def unread(self) -> int:
         """Signals in the pipe that nobody has read."""
         count = array.array("i", [0])
-        if self._pipe >= 0:
-            fcntl.ioctl(self._pipe, termios.FIONREAD, count)
+        with self._lock:
+            if self._pipe >= 0:
+                fcntl.ioctl(self._pipe, termios.FIONREAD, count)
         return count[0]
 
     def _count(self) -> None:
-        if self._pipe < 0:
-            return
         with self._lock, contextlib.suppress(BlockingIOError):
+            if self._pipe < 0:
+                return
             for number in os.read(self._pipe, 64):
                 if number == signal.SIGHUP:  # a shell and the system both send it
                     silence(self._terminals)

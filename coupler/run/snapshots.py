@@ -21,6 +21,7 @@ import numpy as np
 from quintet.coupler.coupling.group import Group
 from quintet.coupler.coupling.iteration.convergence_log import ConvergenceLog, log_file
 from quintet.coupler.coupling.judgement.checks import Judgement
+from quintet.coupler.coupling.saved_values import attributes_like, like, require_same_keys
 from quintet.coupler.coupling.schedule import Coupling
 from quintet.coupler.files.checksums import of_files, require_same
 from quintet.coupler.files.disk import (
@@ -152,11 +153,23 @@ def restore_states(coupling: Coupling, path: Path) -> None:
         for name, participant in coupling.components.items():
             participant.load(_get(file, f"components/{name}"), windows[name])
         state = _get(file, "coupling")
+        _require_same_fields(coupling, state["own"])
         coupling.load(state["own"])
         for name, saved in state["groups"].items():
             group = coupling.members[name]
             assert isinstance(group, Group)
             group.load(saved)
+
+
+def _require_same_fields(coupling: Coupling, state: Mapping[str, Any]) -> None:
+    """Refuse a state whose components or fields are others than those that were joined."""
+    for key in ("outputs", "previous", "sent"):
+        present = getattr(coupling, key)
+        require_same_keys(present, state[key])
+        if key != "sent":
+            for name, fields in present.items():
+                require_same_keys(fields, state[key][name])
+    like(0.0, state["last_dt"])
 
 
 def restore(coupling: Coupling, judgement: Judgement, path: Path) -> None:
@@ -165,7 +178,7 @@ def restore(coupling: Coupling, judgement: Judgement, path: Path) -> None:
     with _read(path) as file:
         coupling.ledger.load(_get(file, "ledger"))
         judgement.load(_get(file, "judgement"))
-        for name, cost in _get(file, "costs").items():
+        for name, cost in attributes_like(coupling.costs, _get(file, "costs")).items():
             setattr(coupling.costs, name, cost)
     # Later ones were cut or changed, or are of windows that are now done again.
     remove(snapshot for snapshot in snapshots(path.parent) if window_of(snapshot) > window_of(path))
@@ -195,7 +208,14 @@ def latest(folder: Path, quietly: bool = False) -> Path:
 def asked_of(path: Path) -> dict[str, Any]:
     """What was asked for in the run of a snapshot: a scene, and what changes it."""
     with _read(path) as file:
-        return dict(_get(file, "asked"))
+        asked = dict(_get(file, "asked"))
+        patterns = {"scene": "", "preset": "", "transport": "", "settings": [], "swaps": []}
+        for key, pattern in patterns.items():
+            if isinstance(pattern, list):
+                asked[key] = [like("", text) for text in like(pattern, asked[key])]
+            else:
+                like(pattern, asked[key])
+        return asked
 
 
 def scene_of(path: Path, transport: str) -> Scene:
@@ -227,19 +247,23 @@ def _without_cores(scene: Mapping[str, Any]) -> dict[str, Any]:
 def windows_of(path: Path) -> dict[str, int]:
     """Windows that each component had done when a snapshot was made."""
     with _read(path) as file:
-        return {name: int(done) for name, done in _get(file, "windows").items()}
+        return {name: like(0, done) for name, done in _get(file, "windows").items()}
 
 
 def file_sizes(path: Path) -> tuple[int, dict[str, int]]:
     """Lengths of the ledger and of the convergence logs when a snapshot was made [bytes]."""
     with _read(path) as file:
-        return int(_get(file, "ledger")["size"]), dict(_get(file, "logs"))
+        lengths = dict(_get(file, "logs"))
+        return like(0, _get(file, "ledger")["size"]), {k: like(0, v) for k, v in lengths.items()}
 
 
 def check_files(path: Path) -> None:
     """Refuse to go on with files that were changed since a snapshot was made."""
     with _read(path) as file:
-        sums = _get(file, "files") or {}
+        sums = {
+            like("", name): [like(0, number) for number in (size, checksum)]
+            for name, (size, checksum) in dict(_get(file, "files") or {}).items()
+        }
     require_same(path.parent, sums, sums)
 
 

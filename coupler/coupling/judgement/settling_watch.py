@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from quintet.coupler.coupling.saved_values import attributes_like
 from quintet.coupler.coupling.schedule import Coupling
 from quintet.interfaces.component import Array
 from quintet.interfaces.sums import dot, norm
@@ -111,8 +112,7 @@ class SettlingWatch:
         for place, values in state.items():
             link, name, key = place.split("/")
             settling = self._settling[link, name, key] = Settling(values["handed"])
-            for item, value in values.items():
-                setattr(settling, item, value)
+            vars(settling).update(attributes_like(settling, values))
 
 
 def _watched(coupling: Coupling) -> dict[Key, tuple[float, ...]]:

@@ -18,6 +18,7 @@ from typing import Any
 
 from quintet.coupler.coupling.energy_balance import KINDS
 from quintet.coupler.coupling.ledger import Account
+from quintet.coupler.coupling.saved_values import attributes_like, like, require_same_keys
 from quintet.coupler.coupling.schedule import Coupling
 
 LIMIT = 0.2  # of the work that went through a link: what a stable coupling makes is less
@@ -157,8 +158,12 @@ class StabilityWatch:
 
     def load(self, state: Mapping[str, Any]) -> None:
         """Come back to what was saved."""
-        self.needs_totals = bool(state["needs_totals"])
-        self._works = {name: LinkWork(**work) for name, work in state["works"].items()}
+        self.needs_totals = like(False, state["needs_totals"])
+        require_same_keys(self._works, state["works"])
+        self._works = {
+            name: LinkWork(**attributes_like(LinkWork(), work))
+            for name, work in state["works"].items()
+        }
         self.unstable = set(state["unstable"])
 
 

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from quintet.coupler.coupling.judgement.time_error import Key
+from quintet.coupler.coupling.saved_values import like
 from quintet.coupler.coupling.schedule import Coupling
 from quintet.interfaces.component import Array
 from quintet.interfaces.sums import norm
@@ -71,8 +72,16 @@ class StartCheck:
 
     def load(self, state: Mapping[str, Any]) -> None:
         """Come back to what was saved."""
-        self._changes, self._late = dict(state["changes"]), dict(state["late"])
-        self._ranges = {key: (low, high) for key, (low, high) in state["ranges"].items()}
+        numbers = np.zeros(0)
+        self._changes = {
+            key: (like(0.0, length), like(numbers, change))
+            for key, (length, change) in state["changes"].items()
+        }
+        self._late = {key: like(0.0, late) for key, late in state["late"].items()}
+        self._ranges = {
+            key: (like(numbers, low), like(numbers, high))
+            for key, (low, high) in state["ranges"].items()
+        }
 
 
 def _is_pushed_late(coupling: Coupling, name: str) -> bool:

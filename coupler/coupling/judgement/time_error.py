@@ -21,6 +21,7 @@ from typing import Any
 
 import numpy as np
 
+from quintet.coupler.coupling.saved_values import attributes_like, like
 from quintet.interfaces.component import Array
 from quintet.interfaces.sums import dot, norm
 
@@ -147,9 +148,14 @@ class TimeErrors:
 
     def load(self, state: Mapping[str, Any]) -> None:
         """Come back to what was saved."""
-        self.window = int(state["window"])
-        self.due, self.skipped = bool(state["due"]), str(state["skipped"])
-        self.fields = {key: FieldError(**values) for key, values in state["fields"].items()}
+        self.window = like(0, state["window"])
+        self.due, self.skipped = like(False, state["due"]), like("", state["skipped"])
+        self.fields = {
+            key: FieldError(**attributes_like(FieldError(), values))
+            for key, values in state["fields"].items()
+        }
+        if any(error.low.shape != error.high.shape for error in self.fields.values()):
+            raise ValueError("the ends of a range must have one shape")
 
     def summary(self) -> list[dict[str, Any]]:
         """What ``results.json`` has of it."""

@@ -111,9 +111,9 @@ def test_a_few_mutated_scenes_are_refused_in_sentences(capsys, tmp_path):
 
 
 @pytest.mark.full
-def test_3000_mutated_scenes_are_refused_in_sentences(capsys, tmp_path):
-    sound = check_all(capsys, tmp_path, 3000, SEED + 1)
-    started = [mutant for mutant in sound if small(mutant)][::16]
+def test_10000_mutated_scenes_are_refused_in_sentences(capsys, tmp_path):
+    sound = check_all(capsys, tmp_path, 10_000, SEED + 1)
+    started = [mutant for mutant in sound if small(mutant)][::64]
     assert len(started) >= 20
     found = {}
     for number, mutant in enumerate(started):
