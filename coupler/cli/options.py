@@ -18,6 +18,7 @@ PRESET = "a preset of the scene"
 SET = "set a key of the scene, as in components.plate.thickness=0.002; may be repeated"
 SWAP = "replace a component: NAME=replay, NAME=replay@RUN, NAME=prescribed, NAME=module:Class"
 TRANSPORT = "how messages travel (default: key transport of the scene)"
+TRANSPORTS = ["memory", "zenoh", "mpi"]
 FORCE = "replace a former run in that folder; only files that it wrote are removed"
 IMPORT = "also import and check kinds module:Class, which are code beside the scene"
 FOR_PROGRAMS = "write the results as JSON to this file"
@@ -47,8 +48,7 @@ def add_scene(command: argparse.ArgumentParser, **more: Any) -> None:
     command.add_argument("--preset", default="", help=PRESET)
     add_settings(command)
     command.add_argument("--swap", action="append", default=[], metavar="NAME=KIND", help=SWAP)
-    transports = ["memory", "zenoh", "mpi"]
-    command.add_argument("--transport", choices=transports, default="", help=TRANSPORT)
+    command.add_argument("--transport", choices=TRANSPORTS, default="", help=TRANSPORT)
 
 
 def add_settings(command: argparse.ArgumentParser) -> None:

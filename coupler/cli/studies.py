@@ -1,9 +1,15 @@
-"""Commands that run a scene many times: study, stability, scan, sweep."""
+"""Commands that run a scene many times: study, stability, scan, sweep, controls."""
 
 import argparse
 from pathlib import Path
 
-from quintet.coupler.cli.options import FOR_PROGRAMS, Command, add_report, add_scene
+from quintet.coupler.cli.options import (
+    FOR_PROGRAMS,
+    TRANSPORTS,
+    Command,
+    add_report,
+    add_scene,
+)
 
 KEEP = "reuse completed runs in DIR, of the same scene on the same machine"
 ALL = "scan all scenes that come with quintet and have scans"
@@ -11,6 +17,11 @@ OVER = "a key and its values, as in components.plate.thickness=0.002,0.004; may 
 JOBS = "runs at once (default: 2)"
 RETRY = "repeat a run so often whose process was killed from outside (default: 1)"
 SWEEP_OUT = "folder of all runs, new or of a former sweep (default: runs/SCENE-sweep)"
+ALL_CONTROLS = "the controls of all scenes that come with quintet, cheapest first"
+CONTROLS_TRANSPORT = "how messages travel (default: memory)"
+CONTROLS_OUT = "folder of all runs, new or of former controls (default: runs/controls)"
+CONTROLS_JSON = "write the results as JSON to this file; other scenes that it has are kept"
+SHOW = "print the table of a file that --json left, as Markdown; run nothing"
 QUICK = "with --all: use the preset quick of scenes that have one"
 
 
@@ -39,15 +50,26 @@ def add_commands(command: Command) -> None:
     sweep.add_argument("--retry", type=int, default=1, metavar="N", help=RETRY)
     sweep.add_argument("--json", type=Path, metavar="FILE", help=FOR_PROGRAMS)
     sweep.add_argument("--out", type=Path, metavar="DIR", help=SWEEP_OUT)
+    controls = command(
+        "controls", series, "check whether tolerances reject the wrong settings of a scene"
+    )
+    controls.add_argument("scene", nargs="?", help="a name from quintet list, or a TOML file")
+    controls.add_argument("--all", action="store_true", help=ALL_CONTROLS)
+    controls.add_argument("--transport", choices=TRANSPORTS, default="", help=CONTROLS_TRANSPORT)
+    controls.add_argument("--json", type=Path, metavar="FILE", help=CONTROLS_JSON)
+    controls.add_argument("--show", type=Path, metavar="FILE", help=SHOW)
+    controls.add_argument("--out", type=Path, metavar="DIR", help=CONTROLS_OUT)
 
 
 def series(options: argparse.Namespace) -> int:
-    """Run a scene many times: a study, stability limits, scans, or a sweep."""
+    """Run a scene many times: a study, stability limits, scans, a sweep, or controls."""
     # Start-up: only these commands need them.
+    from quintet.coupler.study.controls import run_controls
     from quintet.coupler.study.scan import run_scan
     from quintet.coupler.study.stability import run_stability
     from quintet.coupler.study.study import run_study
     from quintet.coupler.study.sweep import run_sweep
 
     runs = {"study": run_study, "stability": run_stability, "scan": run_scan, "sweep": run_sweep}
+    runs["controls"] = run_controls
     return runs[options.command](options)

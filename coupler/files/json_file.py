@@ -13,7 +13,7 @@ from quintet.interfaces.errors import SceneError
 class JsonFile:
     """What a command found, as JSON; with no path, nowhere."""
 
-    def __init__(self, path: Path | None, keys: Collection[str]) -> None:
+    def __init__(self, path: Path | None, keys: Collection[str], option: str = "--json") -> None:
         """Refuse a file, before anything is done, that is not what such a command left.
 
         Parameters
@@ -22,11 +22,13 @@ class JsonFile:
             As given.
         keys : collection of str
             Of the table that the command leaves, or of each in its list.
+        option : str
+            That names the file.
         """
         self.path = path
         if path and path.exists() and not _is_of(path, keys):
             raise SceneError(
-                f"--json {path}: it must be new, or what this command left there before; it is "
+                f"{option} {path}: it must be new, or what this command left there before; it is "
                 "something else. Name another file."
             )
 

@@ -42,6 +42,9 @@ class Outcome:
     not_reached: float | None = None
     reason: str = ""  # why a run that reached its times has no value
     reference_kind: str = ""
+    read_from: str = ""
+    doi: str = ""
+    licence: str = ""
 
 
 def check(
@@ -232,6 +235,9 @@ def evaluate(expectation: Expectation, recording: "Recording", folder: Path) -> 
         not_reached,
         "" if math.isfinite(value) or not_reached is not None else _why_none(expectation),
         expectation.reference_kind,
+        expectation.read_from,
+        expectation.doi,
+        expectation.licence,
     )
 
 

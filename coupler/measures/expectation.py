@@ -8,12 +8,12 @@ from typing import Annotated, Literal
 
 import pydantic
 
+from quintet.coupler.measures.provenance import ReadFrom, ReferenceKind, provenance_rules
 from quintet.interfaces.params import NotNegative, Number, Positive, parameters
 
 Measure = Literal[
     "rms", "relative_rms", "crossing", "at", "max", "min", "mean", "integral", "period", "decay"
 ]  # fmt: skip
-ReferenceKind = Literal["", "exact", "experiment", "other code", "own finest run"]
 DISTANCES = ("rms", "relative_rms")  # to a curve
 Index = Annotated[int, pydantic.Field(ge=0)]
 MEASURED_IN = {"crossing": "s", "period": "s", "decay": "1/s", "relative_rms": "1"}
@@ -78,6 +78,16 @@ class Expectation:
         What the reference is: a formula, a law of conservation, or equations solved to rounding
         (exact), an experiment, another program or method (other code), or a finer or differently
         arranged run of quintet itself (own finest run).
+    read_from
+        How the reference was obtained: from a formula, a conservation law, the text of a
+        publication, a table, a digitised figure, a data file, or a run of a program. An experiment
+        and another code need it.
+    doi
+        DOI of the publication, without an address before it; ``"none"`` if it has none. Experiments
+        need it, and other codes that were not run for this scene.
+    licence
+        Licence of reference data that are not ours, or that none is stated. Curves of experiments
+        and of other codes need it.
     quantity
         What the curve is, in words, for pictures; told by its field if not given.
     required
@@ -104,6 +114,9 @@ class Expectation:
     unit: str
     source: str
     reference_kind: ReferenceKind = ""
+    read_from: ReadFrom = ""
+    doi: str = ""
+    licence: str = ""
     quantity: str = ""
     required: bool = True
 
@@ -143,4 +156,7 @@ class Expectation:
             ),
             (self.field.count(".") != 1, f"field must be port.field; found {self.field!r}."),
             (self.scale == 0.0, "scale must not be 0, as every run would do; remove it."),
+            *provenance_rules(
+                self.reference_kind, self.read_from, self.doi, self.licence, self.csv
+            ),
         ]

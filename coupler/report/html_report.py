@@ -83,6 +83,7 @@ def render(run: Run) -> str:
         run={**EMPTY, **results},
         done=results.get("status") == "done",
         outcomes=[_outcome(outcome) for outcome in results.get("expect") or []],
+        references=run_tables.references(results),
         pictures=_pictures(run),
         parts=[part for part in _parts(run) if not part.is_empty],
         machine=_machine(results.get("machine") or {}),

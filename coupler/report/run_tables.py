@@ -47,6 +47,14 @@ def expectations(run: Mapping[str, Any]) -> TableOfRun:
     return TableOfRun("Expectations", names, 3, rows)
 
 
+def references(run: Mapping[str, Any]) -> TableOfRun:
+    """Where the reference of each expectation is from."""
+    keys = ("name", "reference_kind", "read_from", "source", "doi", "licence")
+    rows = [[str(outcome.get(key) or "-") for key in keys] for outcome in run.get("expect") or []]
+    names = ["expectation", "kind", "read from", "source", "DOI", "licence of the data"]
+    return TableOfRun("References", names, len(names), rows)
+
+
 def met(outcome: Mapping[str, Any]) -> Text:
     """Whether an expectation is met."""
     text = "met" if outcome.get("met") else "not met"

@@ -81,6 +81,9 @@ def _unknown(expectation: Expectation) -> Outcome:
         expectation.source,
         expectation.required,
         reference_kind=expectation.reference_kind,
+        read_from=expectation.read_from,
+        doi=expectation.doi,
+        licence=expectation.licence,
     )
 
 

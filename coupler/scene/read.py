@@ -29,7 +29,7 @@ from quintet.coupler.scene.stability_checks import Scope
 from quintet.coupler.scene.swap import put_swap
 from quintet.coupler.scene.tables import SceneTables
 from quintet.coupler.scene.toml import read_file, too_many
-from quintet.coupler.scene.variants import VARIED, Variants, read_variants, variant_maker
+from quintet.coupler.scene.variants import VARIED, Variants, read_variants
 from quintet.coupler.scene.varied_tables import read_tables
 from quintet.interfaces.errors import LineError, SceneError
 from quintet.interfaces.lines.endpoint import Security, check_endpoint
@@ -182,9 +182,7 @@ def _check(
         expected = {expectation.name: expectation for expectation in expect}
         scope = Scope(file.end, gives, len(links), expected, frozenset(unread))
         check = partial(_check, path, preset=preset, imports=imports) if try_variants else None
-    make_variant = variant_maker(table, check)
-    inherits = bool(preset) and "scan" not in table["presets"][preset]
-    variants, wrong_variants = read_variants(series, make_variant, scope, inherits)
+    variants, wrong_variants = read_variants(series, table, check, scope, preset)
     mistakes += wrong_variants
     if mistakes or file is None or coupling is None:
         raise SceneError([f"{path.name}: {mistake}" for mistake in dict.fromkeys(mistakes)])

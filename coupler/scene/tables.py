@@ -5,6 +5,7 @@ from typing import Any
 
 from quintet.coupler.coupling.links.keys import LinkKeys
 from quintet.coupler.measures.expectation import Expectation
+from quintet.coupler.scene.control_table import ControlTable
 from quintet.coupler.scene.scan_table import ScanTable
 from quintet.coupler.scene.scene import ComponentKeys, GroupSettings
 from quintet.coupler.scene.stability_table import LimitTable
@@ -36,6 +37,8 @@ class SceneTables:
         Limits of stability.
     scan
         Settings varied from safe to absurd, to see whether wrong results are reported.
+    control
+        Wrong settings that the tolerances of expectations must reject.
     """
 
     components: dict[str, ComponentKeys]
@@ -47,3 +50,4 @@ class SceneTables:
     study: tuple[RefinementTable, ...] = ()
     stability: tuple[LimitTable, ...] = ()
     scan: tuple[ScanTable, ...] = ()
+    control: tuple[ControlTable, ...] = ()

@@ -1,10 +1,11 @@
-"""Variants of a scene: its refinements, limits and scans, checked with the scene."""
+"""Variants of a scene: its refinements, limits, scans and controls, checked with the scene."""
 
 from collections.abc import Callable
 from copy import deepcopy
 from dataclasses import dataclass, field
 
-from quintet.coupler.scene.overrides import put
+from quintet.coupler.scene.control_table import Control, MakeControl, read_controls
+from quintet.coupler.scene.overrides import put, put_preset
 from quintet.coupler.scene.scan_table import Scan, read_scans
 from quintet.coupler.scene.stability_checks import Scope, read_limits
 from quintet.coupler.scene.stability_table import Limit
@@ -12,38 +13,58 @@ from quintet.coupler.scene.study_table import Refinement, read_refinements
 from quintet.coupler.scene.varied_tables import MakeVariant, Table
 from quintet.interfaces.errors import SceneError
 
-VARIED = ("study", "stability", "scan")
+VARIED = ("study", "stability", "scan", "control")
 
 
 @dataclass(frozen=True, slots=True)
 class Variants:
-    """Refinements, stability limits and scans of a scene."""
+    """Refinements, stability limits, scans and controls of a scene."""
 
     study: list[Refinement] = field(default_factory=list)
     stability: list[Limit] = field(default_factory=list)
     scan: list[Scan] = field(default_factory=list)
+    control: list[Control] = field(default_factory=list)
 
 
 def read_variants(
     tables: dict[str, list[Table]],
-    make_variant: MakeVariant,
+    scene: Table,
+    check: Callable[[Table], object] | None,
     scope: Scope | None,
-    inherits_scans: bool = False,
+    preset: str = "",
 ) -> tuple[Variants, list[str]]:
-    """Check refinements, limits and scans; a scene with mistakes has no scope."""
+    """Check refinements, limits, scans and controls; a scene with mistakes has no scope.
+
+    Controls are those of the scene without a preset.
+    """
+    make_variant = variant_maker(scene, check)
+    inherits = bool(preset) and "scan" not in scene["presets"][preset]
     refinements, wrong = read_refinements(tables["study"], make_variant)
     limits, wrong_limits = read_limits(tables["stability"], make_variant, scope)
     expected = scope.expected if scope else None
-    scans, wrong_scans = read_scans(tables["scan"], make_variant, expected, inherits_scans)
-    return Variants(refinements, limits, scans), wrong + wrong_limits + wrong_scans
+    scans, wrong_scans = read_scans(tables["scan"], make_variant, expected, inherits)
+    control_tables = [] if preset else tables["control"]
+    make_control = control_maker(scene, check)
+    controls, wrong_controls = read_controls(control_tables, make_control, scene, expected)
+    mistakes = wrong + wrong_limits + wrong_scans + wrong_controls
+    return Variants(refinements, limits, scans, controls), mistakes
 
 
 def variant_maker(table: Table, check: Callable[[Table], object] | None) -> MakeVariant:
     """Return a function that applies settings to a scene and checks it, or their paths alone."""
+    make_control = control_maker(table, check)
+    return lambda settings: make_control("", settings)
 
-    def make_variant(settings: Table) -> tuple[Table, list[str]]:
+
+def control_maker(table: Table, check: Callable[[Table], object] | None) -> MakeControl:
+    """Return a function that applies a preset and settings to a scene, and checks it."""
+
+    def make_control(preset: str, settings: Table) -> tuple[Table, list[str]]:
         plain = deepcopy({key: value for key, value in table.items() if key not in VARIED})
-        mistakes = [m for path, value in settings.items() for m in put(plain, path, value)]
+        mistakes = put_preset(plain, preset) if preset else []
+        mistakes += [m for path, value in settings.items() for m in put(plain, path, value)]
+        for key in VARIED:  # of the preset
+            plain.pop(key, None)
         if check is None or mistakes:
             return plain, mistakes
         try:
@@ -53,4 +74,4 @@ def variant_maker(table: Table, check: Callable[[Table], object] | None) -> Make
             mistakes = [mistake.partition(": ")[2] for mistake in error.mistakes]
         return plain, mistakes
 
-    return make_variant
+    return make_control

@@ -58,10 +58,11 @@ def test_a_preset_leaves_out_scans_that_judge_what_it_does_not_have():
     assert len(hot.scan) < len(plain.scan)
 
 
-def test_every_expectation_says_of_what_kind_its_reference_is():
+def test_every_expectation_says_of_what_kind_its_reference_is_and_how_it_was_read():
     kinds = {"exact", "experiment", "other code", "own finest run"}
     for name, path in sorted(library().items()):
         scene = tomllib.loads(path.read_text())
         tables = [scene, *scene.get("presets", {}).values()]
         for expectation in (row for table in tables for row in table.get("expect", ())):
             assert expectation.get("reference_kind") in kinds, f"{name}: {expectation['name']}"
+            assert expectation.get("read_from"), f"{name}: {expectation['name']}"

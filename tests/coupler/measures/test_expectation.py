@@ -253,3 +253,42 @@ def test_a_reference_that_cannot_be_measured_is_a_mistake(tmp_path):
     ):
         mistakes = check(_expectation(csv="ref.csv", **settings), gives, tmp_path)
         assert len(mistakes) == 1 and word in mistakes[0]
+
+
+FOREIGN = {"reference_kind": "experiment", "read_from": "table", "doi": "10.1098/rsta.1952.0006"}
+PROVENANCE = {
+    "no reading": ({"read_from": ""}, "experiment needs read_from. Say how its numbers were read."),
+    "no doi": ({"doi": ""}, "experiment needs doi. Give that of its publication, or 'none'"),
+    "another doi": ({"doi": "doi.org/10.1/x"}, "doi must begin with 10."),
+    "address": ({"doi": "https://doi.org/10.1098/rsta.1952.0006"}, "without an address before it"),
+    "a law": ({"read_from": "conservation law"}, "an experiment is not read from a conservation"),
+    "curve": (
+        {"measure": "rms", "value": None, "csv": "ref.csv"},
+        "a curve of kind experiment needs licence.",
+    ),
+    "other code": (
+        {"reference_kind": "other code", "read_from": "table", "doi": ""},
+        "a reference of kind other code needs doi.",
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", PROVENANCE)
+def test_what_others_found_needs_its_provenance(case):
+    settings, sentence = PROVENANCE[case]
+    with pytest.raises(ValueError, match=r"expectation top\.x") as told:
+        _expectation(**{"measure": "at", "value": 1.0, **FOREIGN, **settings})
+    assert sentence in str(told.value)
+
+
+def test_provenance_that_is_complete_is_taken_and_told(tmp_path, recording):
+    for settings in (
+        FOREIGN,
+        {**FOREIGN, "doi": "none"},
+        {"reference_kind": "other code", "read_from": "run"},
+        {"reference_kind": "exact"},
+    ):
+        expectation = _expectation(measure="at", value=1.0, **settings)
+        outcome = evaluate(expectation, recording, tmp_path)
+        assert outcome.doi == settings.get("doi", "")
+        assert outcome.read_from == settings.get("read_from", "")

@@ -17,6 +17,7 @@ from quintet.coupler.cli import main
 from quintet.coupler.report import html_report
 from quintet.coupler.report import report_figures as figures
 from quintet.coupler.report.run import Series
+from quintet.coupler.report.run_tables import references
 from quintet.interfaces import libraries
 
 VOID = {"meta", "img", "br", "hr", "link", "input"}
@@ -66,10 +67,27 @@ def springs(tmp_path_factory):
     return out
 
 
+def test_the_page_says_where_references_are_from():
+    outcome = {
+        "name": "front", "value": 1.0, "reference": 1.1, "within": 0.2, "unit": "m", "met": True,
+        "required": True, "source": "Martin & Moyce 1952", "reference_kind": "experiment",
+        "read_from": "table", "doi": "10.1098/rsta.1952.0006", "licence": "none is stated",
+    }  # fmt: skip
+    (row,) = references({"expect": [outcome]}).rows
+    assert row == [
+        "front",
+        "experiment",
+        "table",
+        *(outcome[k] for k in ("source", "doi", "licence")),
+    ]
+    (row,) = references({"expect": [{"name": "old", "source": "by hand"}]}).rows
+    assert row == ["old", "-", "-", "by hand", "-", "-"]
+
+
 def test_the_page_says_what_the_run_left(springs):
     page = _page(springs)
-    for heading in ("Watched quantities", "What moves", "Against references", "Balances",
-                    "Time, and who waited for whom", "How to repeat it"):  # fmt: skip
+    for heading in ("Watched quantities", "References", "What moves", "Against references",
+                    "Balances", "Time, and who waited for whom", "How to repeat it"):  # fmt: skip
         assert heading in page.text
     assert "quintet run" in page.text and "two_springs" in page.text
     assert "momentum residual" in page.text
