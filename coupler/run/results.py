@@ -125,10 +125,13 @@ def draw(scene: Scene, folder: Path, outcomes: list[Outcome]) -> None:
             comparison(scene.folder, scene.expect, outcomes, recording, out, title, values)
 
 
-def timing(participants: dict[str, Participant], wall: float, costs: Costs) -> dict[str, Any]:
+def timing(
+    participants: dict[str, Participant], wall: float, costs: Costs, energy: float | None = None
+) -> dict[str, Any]:
     """Wall time and its parts [s], and the sum of the peak memories of all processes [bytes].
 
     Components that are processes of their own build, compile and compute at the same time.
+    The energy [J] is there where the machine counts it.
     """
     components = {}
     exchange = compile_time = build_time = 0.0
@@ -157,6 +160,7 @@ def timing(participants: dict[str, Participant], wall: float, costs: Costs) -> d
         "mapping": costs.mapping,
         "checks": costs.checks,
         "memory": memory,
+        **({} if energy is None else {"energy": energy}),
     }
 
 

@@ -32,6 +32,7 @@ from quintet.coupler.launch.disturbance import UNDISTURBED, Disturbance
 from quintet.coupler.launch.processes import RUN, OwnProcesses, end_marked
 from quintet.coupler.launch.watchdog import Watchdog
 from quintet.coupler.run import results, snapshots
+from quintet.coupler.run.energy import EnergyMeter
 from quintet.coupler.run.leaving import leave_in_time
 from quintet.coupler.run.loop import run
 from quintet.coupler.run.outcome import failed, how_to_resume, of_disk, outcome_of, refused
@@ -91,6 +92,7 @@ class ActiveRun:
     ) -> None:
         self.scene, self.folder, self.snapshot = scene, folder, snapshot
         self.stop, self.watchdog, self.clock = stop, watchdog, results.Clock()
+        self.energy = EnergyMeter()
         self.exchange = scene.exchange()
         self.disturbance = disturbance_of(scene)
         if snapshot:
@@ -318,7 +320,7 @@ def conclude(run: ActiveRun) -> int:
         "unconverged": run.costs.unconverged,
         "time_errors": run.judgement.time.errors.summary(),
         "notes": notes(run),
-        "timing": results.timing(run.participants, run.clock(), run.costs),
+        "timing": results.timing(run.participants, run.clock(), run.costs, run.energy.joules()),
         "advice": results.advise(scene, run.participants),
         **run.disturbance.summary(),
     }
