@@ -12,6 +12,11 @@ from quintet.coupler.cli.options import (
 )
 
 KEEP = "reuse completed runs in DIR, of the same scene on the same machine"
+ERROR = "recommend the cheapest setting of this relative error, as in 0.05"
+RUN = "with --error: run the recommended setting if it is an extrapolated one"
+STUDY_ALL = "the quick refinements of all scenes that come with quintet; goes on where it was ended"
+MINUTES = "with --all: start no run that would end later (default: 60)"
+README = "with --all: put the table between <!-- study --> and <!-- studied --> of this file"
 ALL = "scan all scenes that come with quintet and have scans"
 OVER = "a key and its values, as in components.plate.thickness=0.002,0.004; may be repeated"
 JOBS = "runs at once (default: 2)"
@@ -30,9 +35,14 @@ def add_commands(command: Command) -> None:
     study = command(
         "study", series, "measure error against run time over the refinements of a scene"
     )
-    add_scene(study)
+    add_scene(study, nargs="?")
     add_report(study, "runs/SCENE-study")
     study.add_argument("--keep", action="store_true", help=KEEP)
+    study.add_argument("--error", type=float, metavar="E", help=ERROR)
+    study.add_argument("--run", action="store_true", help=RUN)
+    study.add_argument("--all", action="store_true", help=STUDY_ALL)
+    study.add_argument("--minutes", type=float, metavar="M", help=MINUTES)
+    study.add_argument("--readme", type=Path, metavar="FILE", help=README)
     stability = command("stability", series, "find the stability limits of a scene")
     add_scene(stability)
     add_report(stability, "runs/SCENE-stability")
@@ -67,9 +77,12 @@ def series(options: argparse.Namespace) -> int:
     from quintet.coupler.study.controls import run_controls
     from quintet.coupler.study.scan import run_scan
     from quintet.coupler.study.stability import run_stability
+    from quintet.coupler.study.studies import run_all
     from quintet.coupler.study.study import run_study
     from quintet.coupler.study.sweep import run_sweep
 
+    if options.command == "study" and options.all and options.scene is None:
+        return run_all(options)
     runs = {"study": run_study, "stability": run_stability, "scan": run_scan, "sweep": run_sweep}
     runs["controls"] = run_controls
     return runs[options.command](options)

@@ -45,6 +45,7 @@ class Outcome:
     read_from: str = ""
     doi: str = ""
     licence: str = ""
+    scale: float | None = None  # what a relative error is relative to; None: nothing
 
 
 def check(
@@ -238,7 +239,27 @@ def evaluate(expectation: Expectation, recording: "Recording", folder: Path) -> 
         expectation.read_from,
         expectation.doi,
         expectation.licence,
+        error_scale(expectation, folder),
     )
+
+
+def error_scale(expectation: Expectation, folder: Path) -> float | None:
+    """What the error of an expectation is relative to; None where there is no such size."""
+    if expectation.relative_to is not None:
+        return expectation.relative_to
+    if expectation.measure == "relative_rms":
+        return 1.0
+    if expectation.measure in DISTANCES:
+        target = reference_curve(expectation, folder)
+        assert target is not None
+        end = float(target.times[-1]) if expectation.end is None else expectation.end
+        part = time_series.between(target, expectation.begin, end)
+        size = float(np.sqrt(np.mean(part.values**2)))
+    else:
+        size = abs(reference_value(expectation, folder))
+    if size == 0.0 and same(expectation.unit, "1"):  # of a ratio the error is relative as it is
+        return 1.0
+    return size or None
 
 
 def _why_none(expectation: Expectation) -> str:

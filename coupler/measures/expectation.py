@@ -70,6 +70,9 @@ class Expectation:
         run, and in the reference.
     within : `unit`
         Tolerance; of a crossing in s.
+    relative_to : `unit`
+        What a relative error is relative to; if not given, the reference, the size of the curve
+        (rms), or 1 (of a ratio whose reference is 0, and of relative_rms).
     unit
         Of the measured value.
     source
@@ -111,6 +114,7 @@ class Expectation:
     moving_mean: NotNegative = 0.0
     from_level: Number | None = None
     within: NotNegative
+    relative_to: Positive | None = None
     unit: str
     source: str
     reference_kind: ReferenceKind = ""

@@ -5,6 +5,7 @@ Matplotlib is loaded by the functions that draw: a run without pictures does not
 
 import math
 import sys
+import textwrap
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +20,7 @@ AROUND = (0.8, 0.95)  # inches, what axes take beside and below a panel, and its
 MOST = 6  # columns
 GAP = 0.1  # inches, between rows of panels, and from their title
 DOTS = 120  # per inch
+LETTERS = 9.0  # of a title, per inch
 
 
 def can_draw() -> bool:
@@ -60,7 +62,9 @@ def _figure(
     figure = Figure(figsize=size, layout=ConstrainedLayoutEngine(h_pad=GAP))
     FigureCanvasAgg(figure)  # no window, and none of the global state of pyplot
     if title:
-        figure.suptitle(title, fontsize=12, wrap=True)
+        width = int(LETTERS * size[0])  # matplotlib breaks no words
+        lines = [textwrap.fill(line, width) for line in title.split("\n")]
+        figure.suptitle("\n".join(lines), fontsize=12, wrap=True)
     panels = figure.subplots(rows, columns, squeeze=False).ravel().tolist()
     for unused in panels[count:]:
         unused.remove()

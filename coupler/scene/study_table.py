@@ -5,12 +5,15 @@
     settings = { "components.water.spacing" = 0.03, "window" = 6e-4 }
     size = "components.water.spacing"
 
-A refinement that names a `size` takes part in the observed order of the error against it.
+A refinement that names a `size` takes part in the observed order of the error against it. The kind
+of that size is given by `refines`, or follows from its path.
 """
 
 from collections import Counter
-from dataclasses import dataclass
-from typing import Any
+from collections.abc import Mapping
+from copy import deepcopy
+from dataclasses import dataclass, field, replace
+from typing import Any, Literal, get_args
 
 from quintet.coupler.scene.varied_tables import (
     MakeVariant,
@@ -20,6 +23,12 @@ from quintet.coupler.scene.varied_tables import (
     value_at,
 )
 from quintet.interfaces.params import parameters, shown
+
+Kind = Literal["coupling", "time step", "spacing", "model"]
+KINDS: tuple[Kind, ...] = get_args(Kind)
+COUPLED = ("window", "scheme", "iteration", "groups", "links")  # first parts of paths
+STEPS = ("step", "dt", "courant", "substeps")  # last parts of paths, also after an underscore
+SPACINGS = ("spacing", "elements", "cells", "layers")  # any parts of paths
 
 
 @parameters
@@ -34,20 +43,43 @@ class RefinementTable:
         By dotted path, on top of the scene.
     size
         Path of the size against which the order is observed.
+    refines
+        What is refined; if not given it follows from the path of `size`: window, scheme, iteration,
+        groups and links are the coupling (without links the window is the time step); a step, dt,
+        courant or substeps is the time step; a spacing, elements, cells or layers is the spacing;
+        all else is the model.
     """
 
     label: str
     settings: dict[str, Any]
     size: str = ""
+    refines: Literal["", "coupling", "time step", "spacing", "model"] = ""
 
 
 @dataclass(frozen=True, slots=True)
 class Refinement:
-    """One refinement, checked."""
+    """One refinement, checked.
+
+    Attributes
+    ----------
+    size : float or None
+        Of its own kind; smaller is finer; of a whole number, a count, its inverse.
+    sizes : mapping
+        By kind: the sizes of all kinds that the study refines, as they are in this refinement.
+    ladders : tuple
+        Kinds to whose observed order it contributes: its own, and those whose refinements it
+        equals in all but their size.
+    varied : mapping
+        By path: the values of all that any refinement of the study sets.
+    """
 
     label: str
     settings: dict[str, Any]
-    size: float | None = None  # smaller is finer; of a whole number, a count, its inverse
+    size: float | None = None
+    kind: Kind = "model"
+    sizes: Mapping[str, float] = field(default_factory=dict)
+    ladders: tuple[Kind, ...] = ()
+    varied: Mapping[str, Any] = field(default_factory=dict)
 
     @property
     def folder(self) -> str:
@@ -55,37 +87,59 @@ class Refinement:
         return folder_name(self.label)
 
 
+def kind_of(path: str, has_links: bool) -> Kind:
+    """Kind of error that a size at a path of the scene controls."""
+    parts = path.split(".")
+    if path == "window" and not has_links:
+        return "time step"
+    if parts[0] in COUPLED:
+        return "coupling"
+    if parts[-1].rpartition("_")[2] in STEPS:
+        return "time step"
+    if any(part.rpartition("_")[2] in SPACINGS for part in parts):
+        return "spacing"
+    return "model"
+
+
 def read_refinements(
     tables: list[Table], make_variant: MakeVariant
 ) -> tuple[list[Refinement], list[str]]:
     """Check the refinements of a scene; return them, and every mistake."""
     refinements: list[Refinement] = []
+    variants: list[Table] = []
     mistakes: list[str] = []
-    paths: set[str] = set()
+    paths: dict[Kind, dict[str, None]] = {}
     for place, table in read_tables(RefinementTable, "study", "label", tables, mistakes):
         variant, wrong = make_variant(table.settings)
         mistakes += [f"{place}: {mistake}" for mistake in wrong]
+        kind = table.refines or kind_of(table.size, bool(variant.get("links")))
         size = None
         if table.size and not wrong:
             size, wrong = _size(place, table.size, variant)
             mistakes += wrong
-            paths.add(table.size)
-        refinements.append(Refinement(table.label, table.settings, size))
-    return refinements, [*mistakes, *_clashes(refinements, paths)]
+            paths.setdefault(kind, {})[table.size] = None
+        refinements.append(Refinement(table.label, table.settings, size, kind))
+        variants.append(variant)
+    mistakes += _clashes(refinements, paths)
+    if not mistakes:
+        chosen = {kind: next(iter(names)) for kind, names in paths.items()}
+        refinements = _compared(refinements, variants, chosen)
+    return refinements, mistakes
 
 
-def _clashes(refinements: list[Refinement], paths: set[str]) -> list[str]:
+def _clashes(refinements: list[Refinement], paths: dict[Kind, dict[str, None]]) -> list[str]:
     mistakes = [
         f"study: {count} refinements have the label {label}. Give each its own, in letters "
         "and digits."
         for label, count in Counter(refinement.folder for refinement in refinements).items()
         if count > 1
     ]
-    if len(paths) > 1:
-        mistakes.append(
-            "study: one size must serve all refinements that name one; found "
-            f"{', '.join(sorted(paths))}. Name the same, or none."
-        )
+    mistakes += [
+        f"study: one size must serve all refinements of the {kind}; found "
+        f"{', '.join(sorted(names))}. Name the same, or say what each refines with refines."
+        for kind, names in paths.items()
+        if len(names) > 1
+    ]
     return mistakes
 
 
@@ -93,9 +147,65 @@ def _size(place: str, path: str, table: Table) -> tuple[float | None, list[str]]
     value, wrong = value_at(table, path)
     if wrong:
         return None, [f"{place}.size {wrong}"]
-    if isinstance(value, bool) or not isinstance(value, (int, float)) or not value > 0:
+    size = _number(value)
+    if size is None:
         return None, [
             f"{place}.size {path} must be a positive number; found {shown(value)}. Name what "
             "is refined."
         ]
-    return (1.0 / value if isinstance(value, int) else value), []
+    return size, []
+
+
+def _number(value: Any) -> float | None:
+    """Size that a value is: smaller is finer; of a whole number, a count, its inverse."""
+    if isinstance(value, bool) or not isinstance(value, (int, float)) or not value > 0:
+        return None
+    return 1.0 / value if isinstance(value, int) else value
+
+
+def _compared(
+    refinements: list[Refinement], variants: list[Table], paths: Mapping[Kind, str]
+) -> list[Refinement]:
+    """Add to each refinement the sizes of all kinds, and the kinds to whose order it contributes.
+
+    A point at which two kinds meet, as the finest of both, then needs to be run once.
+    """
+    ladders: list[list[Kind]] = [[] for _ in refinements]
+    for kind, path in paths.items():
+        others = [_without(variant, path) for variant in variants]
+        members = [k for k, r in enumerate(refinements) if r.kind == kind and r.size is not None]
+        taken = {refinements[k].size for k in members}
+        for number, variant in enumerate(variants):
+            size = _number(value_at(variant, path)[0])
+            joins = size not in taken and any(others[number] == others[k] for k in members)
+            if number in members or (size is not None and joins):
+                ladders[number].append(kind)
+                taken.add(size)
+    every_path = list(dict.fromkeys(path for r in refinements for path in r.settings))
+    return [
+        replace(
+            refinement,
+            sizes={
+                kind: size
+                for kind, path in paths.items()
+                if (size := _number(value_at(variant, path)[0])) is not None
+            },
+            ladders=tuple(kinds),
+            varied={p: value_at(variant, p)[0] for p in every_path if not value_at(variant, p)[1]},
+        )
+        for refinement, variant, kinds in zip(refinements, variants, ladders, strict=True)
+    ]
+
+
+def _without(table: Table, path: str) -> Table:
+    """Copy a scene's tables without the value at a path."""
+    copy: Any = deepcopy(table)
+    *heads, last = path.split(".")
+    at = copy
+    for part in heads:
+        at = at[int(part)] if isinstance(at, list) else at.get(part, {})
+    if isinstance(at, list):
+        at[int(last)] = None
+    else:
+        at.pop(last, None)
+    return copy

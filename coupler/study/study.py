@@ -6,40 +6,68 @@ processors. An interrupted study reports those that ran; ``--keep`` continues fr
 
 import argparse
 import json
+from datetime import date
 from pathlib import Path
 from typing import Any
 
 from quintet.coupler.files.disk import write_whole
 from quintet.coupler.files.json_file import JsonFile
-from quintet.coupler.measures.convergence import least_squares, richardson
+from quintet.coupler.files.run_files import RESULTS
 from quintet.coupler.report import show
-from quintet.coupler.report.work_precision import draw, table
+from quintet.coupler.report.study_tables import costs_and_errors, orders, shares
+from quintet.coupler.report.work_precision import draw
 from quintet.coupler.run import results
 from quintet.coupler.run.folder import begin_series, discard_former
 from quintet.coupler.run.signals import StopRequest
-from quintet.coupler.scene.read import load_variants
+from quintet.coupler.scene.overrides import assignments
+from quintet.coupler.scene.read import load, load_variants
 from quintet.coupler.scene.study_table import Refinement
 from quintet.coupler.study.child_run import ChildRun
+from quintet.coupler.study.conclusion import conclude, shares_at
+from quintet.coupler.study.finest import compare_with_finest
+from quintet.coupler.study.row import row_of, worst
+from quintet.coupler.study.wanted_error import choose
 from quintet.interfaces.errors import SceneError
 
 NAME, PICTURE = "study.json", "study.png"
+EXTRAPOLATED = "extrapolated"  # folder of the run of an extrapolated setting
 Row = dict[str, Any]
 
 
 def run_study(options: argparse.Namespace) -> int:
-    """Run all refinements, compare them, and recommend the cheapest that meets all expectations."""
+    """Run all refinements, compare them, and recommend a setting."""
+    _check_options(options)
     asked = (options.scene, options.preset, options.settings, options.swap, options.transport)
     scene, variants = load_variants(*asked)
     wanted = JsonFile(options.json, ("scene", "rows"))
     if not variants.study:
         raise SceneError(f"{scene.path.name}: there is no [[study]]. Add one for every refinement.")
+    folders = [refinement.folder for refinement in variants.study]
+    if options.run and EXTRAPOLATED in folders:
+        raise SceneError(
+            f"study: with --run no refinement may have the label {EXTRAPOLATED}. Rename it."
+        )
     files = (NAME, PICTURE)
     with begin_series(
         "study", scene.file.name, files, options.out, options.force, options.keep
     ) as place:
-        place.check_runs(refinement.folder for refinement in variants.study)
+        place.check_runs([*folders, *([EXTRAPOLATED] if options.run else [])])
         discard_former(place.path)
         return _run_all(options, scene.file.name, variants.study, place.path, wanted)
+
+
+def _check_options(options: argparse.Namespace) -> None:
+    if options.all == (options.scene is not None):
+        raise SceneError("study needs either a scene or --all. Give one of them.")
+    for option in ("readme", "minutes"):
+        if getattr(options, option) is not None:
+            raise SceneError(f"--{option} belongs to --all. Remove it, or name no scene.")
+    if options.error is not None and not 0.0 < options.error < float("inf"):
+        raise SceneError(
+            f"--error must be above 0, as 0.05 for 5 %; found {options.error:g}. Correct it."
+        )
+    if options.run and options.error is None:
+        raise SceneError("--run belongs to --error. Give --error 0.05, or remove --run.")
 
 
 def _run_all(
@@ -58,105 +86,141 @@ def _run_all(
             earlier = child.earlier(refinement.settings, place) if options.keep else None
             print(f"{refinement.label}: {'kept' if earlier else 'running'} in {place}", flush=True)
             rows.append(row_of(refinement, earlier or child.run(refinement.settings, place)))
+            rows[-1]["date"] = date_of(place)
             print(f"{refinement.label}: {rows[-1]['status']}, {rows[-1]['wall']:.1f} s", flush=True)
             if rows[-1]["status"] == "interrupted" or stop():
                 break
-    summary = conclude(scene, rows)
+        folders = {refinement.label: folder / refinement.folder for refinement in refinements}
+        summary = summarize(scene, refinements, rows, folders, options.error)
+        if options.error is not None:
+            _check_offer(child, summary["wanted"])
+        print_summary(summary)
+        if options.run and not stop():
+            _run_wanted(child, summary["wanted"], folder)
+    if draw(summary, folder / PICTURE):
+        print(f"drawn in {folder / PICTURE}")
     write_whole(folder / NAME, json.dumps(summary, indent=2))
     wanted.write(summary)
-    print_summary(summary, folder / PICTURE)
     return status_of(summary, len(refinements))
 
 
-def _judged(outcomes: list[Row]) -> Row:
-    """What expectations gave, by their names."""
-    names = [outcome["name"] for outcome in outcomes]
-    columns = {
-        "errors": map(error_of, outcomes),
-        "values": (outcome["value"] for outcome in outcomes),
-        "within": (outcome["within"] for outcome in outcomes),
-        "units": (outcome["unit"] for outcome in outcomes),
-    }
-    return {key: dict(zip(names, column, strict=True)) for key, column in columns.items()}
+def date_of(folder: Path) -> str | None:
+    """Day on which the results in a folder were written; None where there are none."""
+    path = folder / RESULTS
+    return date.fromtimestamp(path.stat().st_mtime).isoformat() if path.is_file() else None
 
 
-def row_of(refinement: Refinement, run: Row) -> Row:
-    """Summarize the run of a refinement; times in s, memory in bytes."""
-    timing = run.get("timing", {})
-    components = timing.get("components", {})
-    wall = timing.get("wall", 0.0)
-    expected = run.get("expect", [])
-    return {
-        "label": refinement.label,
-        "settings": refinement.settings,
-        "size": refinement.size,
-        "status": run["status"],
-        "met": bool(expected)
-        and all(outcome["met"] or not outcome["required"] for outcome in expected),
-        **_judged(expected),
-        "wall": wall,
-        "cpu": sum(times["cpu"] for times in components.values()),
-        "memory": timing.get("memory"),
-        "overhead": (timing["exchange"] + timing["mapping"]) / wall if wall else None,
-        "items": sum(times["items"] for times in components.values()),
-        "components": components,
-    }
+def summarize(
+    scene: str,
+    refinements: list[Refinement],
+    rows: list[Row],
+    folders: dict[str, Path],
+    error: float | None = None,
+) -> Row:
+    """Compare rows with references, or with the finest; choose the setting for a wanted error."""
+    if not any(row["values"] for row in rows):
+        compare_with_finest(rows, folders)
+    summary = conclude(scene, rows)
+    chosen = summary["recommended"]
+    if error is not None:
+        summary["wanted"] = choose(error, summary, refinements)
+        chosen = summary["wanted"].get("measured")
+    summary["shares"] = shares_at(chosen["label"] if chosen else None, rows)
+    return summary
 
 
-def error_of(outcome: Row) -> float | None:
-    """Distance of a value from its reference; None where the run has no value."""
-    return None if outcome["value"] is None else abs(outcome["value"] - outcome["reference"])
+def _check_offer(child: ChildRun, wanted: Row) -> None:
+    """Withdraw an extrapolated setting that the scene refuses."""
+    offer = wanted.get("extrapolated")
+    if offer is None:
+        return
+    settings = [*child.settings, *assignments(offer["settings"])]
+    try:
+        load(child.scene, child.preset, settings, child.swaps, child.transport)
+    except SceneError as error:
+        wanted["reason"] = f"the scene refuses the extrapolated {offer['settings']}: {error}"
+        del wanted["extrapolated"]
 
 
-def conclude(scene: str, rows: list[Row]) -> Row:
-    """Compare the refinements: observed orders, and the cheapest that meets all expectations."""
-    done = [row for row in rows if row["status"] == "done"]
-    sized = [row for row in done if row["size"] is not None]
-    names = list(dict.fromkeys(name for row in done for name in row["errors"]))
-    orders: dict[str, float | None] = {}
-    settled: dict[str, float | None] = {}
-    for name in names:
-        known = [row for row in sized if row["errors"][name] is not None]
-        sizes = [row["size"] for row in known]
-        orders[name] = least_squares(sizes, [row["errors"][name] for row in known])
-        settled[name] = richardson(sizes, [row["values"][name] for row in known])
-    cheapest = min((row for row in done if row["met"]), key=lambda row: row["cpu"], default=None)
-    keys = ("label", "settings", "cpu", "wall", "errors")
-    return {
-        "scene": scene,
-        "rows": rows,
-        "orders": orders,
-        "richardson": settled,
-        "recommended": {key: cheapest[key] for key in keys} if cheapest else None,
-        "machine": results.machine(),
-    }
+def _run_wanted(child: ChildRun, wanted: Row, folder: Path) -> None:
+    """Run an extrapolated setting, and say whether it delivers; what was measured was run."""
+    offer = wanted.get("extrapolated")
+    if offer is None:
+        if "measured" in wanted:
+            print(f"{wanted['measured']['label']} was run: nothing is left to run", flush=True)
+        return
+    place = folder / EXTRAPOLATED
+    print(f"{EXTRAPOLATED}: running in {place}", flush=True)
+    refinement = Refinement(EXTRAPOLATED, offer["settings"])
+    row = row_of(refinement, child.run(offer["settings"], place))
+    error = worst(row, wanted["judged"])
+    wanted["ran"] = {**row, "delivers": error is not None and error <= wanted["error"]}
+    said = "unknown" if error is None else f"{100.0 * error:.3g} %"
+    verdict = "delivers" if wanted["ran"]["delivers"] else "does not deliver"
+    print(f"{EXTRAPOLATED}: {row['status']}, {row['cpu']:.3g} s of processor time; error {said}: "
+          f"it {verdict} {100.0 * wanted['error']:g} %", flush=True)  # fmt: skip
 
 
-def print_summary(summary: Row, picture: Path) -> None:
-    """Print the table, the orders and the recommendation; draw the work-precision diagram."""
+def print_summary(summary: Row) -> None:
+    """Print the tables and the recommendation."""
     screen, rows = show.console(), summary["rows"]
-    screen.print(table(rows))
-    for name, order in summary["orders"].items():
-        orders = [f"{order:.2f} by least squares" if order is not None else "no order observed"]
-        if (also := summary["richardson"][name]) is not None:
-            orders.append(f"{also:.2f} from the three finest")
-        screen.print(f"order of {name}: {', '.join(orders)}")
+    screen.print(costs_and_errors(rows))
+    if any(row.get("compared_with") for row in rows):
+        screen.print(
+            "no expectations: errors are against the finest refinement, over how far its fields "
+            "move"
+        )
+    if summary["kinds"]:
+        screen.print(orders(summary["kinds"]))
+    if summary["shares"]:
+        screen.print(shares(summary["shares"]))
+    for sentence in recommendation(summary):
+        screen.print(sentence, markup=False)
+
+
+def recommendation(summary: Row) -> list[str]:
+    """Say which setting is recommended, and for which error."""
+    if "wanted" in summary:
+        return _wanted_words(summary["wanted"])
     best = summary["recommended"]
-    screen.print(
-        f"recommended: {best['label']}, the cheapest that meets all expectations "
-        f"({best['cpu']:.3g} s of processor time)"
-        if best
-        else "recommended: none; no refinement meets all expectations"
-    )
-    if draw(rows, picture, summary["scene"]):
-        screen.print(f"drawn in {picture}")
+    if best:
+        cost = f"{best['cpu']:.3g} s of processor time"
+        return [f"recommended: {best['label']}, the cheapest that meets all expectations ({cost})"]
+    if not summary["has_expectations"]:
+        return ["recommended: none, as there are no expectations; name a wanted --error"]
+    return ["recommended: none; no refinement meets all expectations"]
+
+
+def _wanted_words(wanted: Row) -> list[str]:
+    percent = f"{100.0 * wanted['error']:g} %"
+    words = []
+    if wanted["left_out"]:
+        names = ", ".join(wanted["left_out"])
+        words.append(f"left out, as nothing is there that their error is relative to: {names}")
+    if best := wanted.get("measured"):
+        cost = f"{best['cpu']:.3g} s of processor time"
+        error = f"{100.0 * best['relative']:.3g} %"
+        return [*words, f"recommended for {percent}: {best['label']}, the cheapest measured that "
+                f"delivers it (error {error}, {cost})"]  # fmt: skip
+    if offer := wanted.get("extrapolated"):
+        values = ", ".join(assignments(offer["settings"]))
+        return [*words, f"recommended for {percent}: none that was measured. EXTRAPOLATED from "
+                f"{offer['from']} ({offer['kind']}), not measured: {values}; predicted error "
+                f"{100.0 * offer['relative']:.3g} %, predicted {offer['cpu']:.3g} s of processor "
+                "time"]  # fmt: skip
+    return [*words, f"recommended for {percent}: none; {wanted['reason']}"]
 
 
 def status_of(summary: Row, refinements: int) -> int:
-    """Exit status of the worst run; 1 where no refinement meets all expectations."""
+    """Exit status of the worst run; 1 where no refinement meets what is wanted or expected."""
     states = [row["status"] for row in summary["rows"]]
     if "interrupted" in states or len(states) < refinements:
         return results.INTERRUPTED
     if any(state != "done" for state in states):
         return results.FAILED
-    return results.DONE if summary["recommended"] else results.UNMET
+    if "wanted" in summary:
+        ran = summary["wanted"].get("ran", {})
+        delivers = "measured" in summary["wanted"] or ran.get("delivers", False)
+        return results.DONE if delivers else results.UNMET
+    met = summary["recommended"] or not summary["has_expectations"]
+    return results.DONE if met else results.UNMET

@@ -23,7 +23,7 @@ from quintet.coupler.run.folder import share
 from quintet.coupler.run.signals import StopRequest
 from quintet.coupler.scene.study_table import Refinement
 from quintet.coupler.scene.sweep_axes import Axis, label, read_axes
-from quintet.coupler.study.study import row_of
+from quintet.coupler.study.row import row_of
 from quintet.coupler.study.sweep_plan import Asked, plan
 from quintet.coupler.study.sweep_progress import SweepProgress
 from quintet.coupler.study.sweep_run import ELSEWHERE, JOURNAL, KEPT, Job, carry_out
@@ -166,7 +166,7 @@ def _collect(
     swept.rows = list(rows.values())
     progress, written = SweepProgress(len(tasks)), time.monotonic()
     try:
-        for job, run in _finished(tasks, executor, do, stop):
+        for job, run in finished(tasks, executor, do, stop):
             rows[job.name].update(_row(job, run))
             progress.show(rows[job.name])
             if time.monotonic() - written > WRITE:
@@ -176,7 +176,7 @@ def _collect(
         progress.close()
 
 
-def _finished(
+def finished(
     tasks: Sequence[Job], executor: Executor, do: Callable[[Job], Any], stop: Callable[[], bool]
 ) -> Iterator[tuple[Job, Any]]:
     """Yield runs as they end; those that another sweep does are asked for again and again."""

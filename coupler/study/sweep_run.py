@@ -1,4 +1,4 @@
-"""One run of a sweep: found complete, resumed from its snapshot, or run.
+"""One run of a sweep, or of all studies: found complete, resumed from its snapshot, or run.
 
 It is done in whatever process or thread an executor chooses, on any host that sees the folder. All
 that the sweep needs to know of it stands in the folder, so that it may be killed at any time.
@@ -59,6 +59,9 @@ class Job:
         Of the packages, as they stand in results.
     retry : int
         How often the run is repeated when its process is killed from outside.
+    resumes : bool
+        Whether a run that was cut goes on from its snapshot; else it begins again, as its times
+        are wanted, which count from where it was resumed.
     """
 
     name: str
@@ -68,6 +71,7 @@ class Job:
     resolved: dict[str, Any]
     versions: dict[str, str]
     retry: int = 1
+    resumes: bool = True
 
     @property
     def folder(self) -> Path:
@@ -136,7 +140,7 @@ def _repeat(job: Job, stop: Callable[[], bool]) -> Any:
 def _begin(job: Job, child: ChildRun) -> Any:
     """Go on with the run from its last snapshot; without one, run it."""
     wait_until_free(job.folder, ORPHAN)
-    if snapshots(job.folder):
+    if job.resumes and snapshots(job.folder):
         job.note("resumed")
         with contextlib.suppress(SceneError):
             run = child.resume(job.settings, job.folder)

@@ -34,7 +34,8 @@ def measured(command: str, out: Path, *options: str) -> dict:
 def test_impacts_are_of_second_order_in_the_step(tmp_path: Path) -> None:
     found = measured("study", tmp_path)
     assert [row["status"] for row in found["rows"]] == ["done"] * 5
-    damped = [found["orders"][f"restitution_{e}"] for e in (0.2, 0.4, 0.6, 0.8)]
+    orders = found["kinds"]["time step"]["orders"]
+    damped = [orders[f"restitution_{e}"]["order"] for e in (0.2, 0.4, 0.6, 0.8)]
     assert 1.8 < min(damped) and max(damped) < 2.7
     assert [row["label"] for row in found["rows"] if row["met"]] == ["0.2 us", "0.1 us", "0.05 us"]
 

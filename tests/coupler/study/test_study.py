@@ -10,8 +10,6 @@ import pytest
 from spring_scene import command, found_by, write
 from started import write_scene
 
-from quintet.coupler.measures.convergence import least_squares, richardson
-
 REFINEMENT = """
 [[study]]
 label = "{0}"
@@ -42,13 +40,18 @@ def test_a_study_observes_the_order_of_an_integrator(tmp_path, capsys):
         assert spring["steps"] == round(1.0 / step) and row["items"] == 1
         assert 0.0 < spring["cpu"] == row["cpu"] < row["wall"]
         assert row["memory"] > 1e7 and 0.0 < row["overhead"] < 1.0
-    assert found["orders"]["end"] == pytest.approx(2.0, abs=0.05)
-    assert found["richardson"]["end"] == pytest.approx(2.0, abs=0.05)
+    steps = found["kinds"]["time step"]
+    order, limit = steps["orders"]["end"], steps["limits"]["end"]
+    assert order["low"] < order["order"] == pytest.approx(2.0, abs=0.05) and order["high"] < 2.2
+    assert limit["order"] == pytest.approx(2.0, abs=0.05)
+    assert limit["value"] == pytest.approx(-0.8390715, abs=limit["uncertainty"])
+    split = found["shares"]["of"]["end"]
+    assert found["shares"]["label"] == "0.00390625" and split["time step"] > 0.97
     assert [row["met"] for row in found["rows"]] == [False, False, True]
     assert found["recommended"]["label"] == "0.00390625"
     said = capsys.readouterr().out
     assert "recommended: 0.00390625, the cheapest that meets all expectations" in said
-    assert "order of end: 2.0" in said and "not met" in said
+    assert "not met" in said and "spring: CPU [s]" in said and "energy" not in said
 
 
 def test_a_study_leaves_its_runs_a_table_and_a_picture(tmp_path):
@@ -84,14 +87,67 @@ def test_a_refinement_that_fails_is_told_and_the_others_count(tmp_path, capsys):
     assert "asked to raise" in (tmp_path / "all" / "dies" / "run.log").read_text()
 
 
-def test_orders_are_those_of_exact_powers():
-    sizes = [0.4, 0.2, 0.1, 0.05]
-    values = [3.0 + 2.0 * h**1.5 for h in sizes]
-    assert least_squares(sizes, [2.0 * h**1.5 for h in sizes]) == pytest.approx(1.5)
-    assert richardson(sizes, values) == pytest.approx(1.5)
-    assert least_squares([0.1], [1.0]) is None and least_squares([0.1, 0.2], [0.0, 1.0]) is None
-    assert richardson([0.4, 0.2, 0.15], values[:3]) is None  # no constant ratio
-    assert richardson([0.4, 0.2, 0.1], [1.0, 2.0, 1.0]) is None  # does not settle
+def test_a_wanted_error_is_delivered_by_the_cheapest_or_by_an_extrapolated_setting(
+    tmp_path, capsys
+):
+    path = write(tmp_path, refinements(*STEPS))
+    status, found = found_by("study", path, "--error", 0.005)
+    rows, best = found["rows"], found["wanted"]["measured"]
+    assert status == 0 and best["relative"] <= 0.005
+    cheaper = [row for row in rows if row["cpu"] < best["cpu"]]
+    assert all(row["relative"]["end"] > 0.005 for row in cheaper)
+    assert found["shares"]["label"] == best["label"]
+    assert f"recommended for 0.5 %: {best['label']}, the cheapest" in capsys.readouterr().out
+
+    status, found = found_by("study", path, "--error", 1e-5, "--keep")
+    assert status == 1 and "ran" not in found["wanted"]
+    assert "EXTRAPOLATED from 0.00390625 (time step), not measured" in capsys.readouterr().out
+    status, found = found_by("study", path, "--error", 1e-5, "--keep", "--run")
+    assert status == 0 and found["wanted"]["ran"]["relative"]["end"] <= 1e-5
+    step = found["wanted"]["extrapolated"]["settings"]["components.spring.step"]
+    assert f"step = {step}" in (tmp_path / "all" / "extrapolated" / "scene.toml").read_text()
+    assert "it delivers 0.001 %" in capsys.readouterr().out
+
+
+def test_without_expectations_refinements_are_compared_with_the_finest(tmp_path, capsys):
+    path = write(tmp_path, refinements(*STEPS))
+    text = path.read_text()
+    begin, end = text.index("[[expect]]"), text.index("[[study]]")
+    output = '[output]\nfields = ["spring.motion.position"]\n'
+    path.write_text(text[:begin] + output + text[end:])
+    status, found = found_by("study", path)
+    said = capsys.readouterr().out
+    assert status == 0 and "met" not in said
+    assert [row["met"] for row in found["rows"]] == 3 * [None]
+    assert [row["compared_with"] for row in found["rows"]] == 3 * ["0.00390625"]
+    coarse, fine, finest = (row["errors"] for row in found["rows"])
+    assert finest == {} and coarse.keys() == fine.keys() == {"spring.motion.position"}
+    # Second order against the finest of three: (16 - 1) / (4 - 1).
+    assert coarse["spring.motion.position"] / fine["spring.motion.position"] == pytest.approx(
+        5.0, rel=0.1
+    )
+    order = found["kinds"]["time step"]["orders"]["spring.motion.position"]
+    assert order["order"] == pytest.approx(2.0, abs=0.15)
+    status, found = found_by("study", path, "--keep", "--error", 0.05)
+    assert status == 0 and found["wanted"]["measured"]["relative"] <= 0.05
+
+
+OPTIONS = {
+    "no error": (("--error", 0.0), "--error must be above 0, as 0.05 for 5 %; found 0. Correct"),
+    "run alone": (("--run",), "--run belongs to --error. Give --error 0.05, or remove --run."),
+    "minutes": (("--minutes", 3), "--minutes belongs to --all. Remove it, or name no scene."),
+    "a file": (("--readme", "x.md"), "--readme belongs to --all. Remove it, or name no scene."),
+    "all": (("--all",), "study needs either a scene or --all. Give one of them."),
+}
+
+
+@pytest.mark.parametrize("case", OPTIONS)
+def test_options_that_do_not_go_together_are_refused(tmp_path, capsys, case):
+    options, sentence = OPTIONS[case]
+    path = write(tmp_path, refinements(*STEPS))
+    assert command("study", path, *options, "--out", tmp_path / "all") == 2
+    assert sentence in capsys.readouterr().err
+    assert not (tmp_path / "all").exists()
 
 
 WRONG = {
@@ -123,9 +179,9 @@ WRONG = {
     ),
     "two sizes": (
         'label = "a"\nsettings = {}\nsize = "end"\n'
-        '[[study]]\nlabel = "b"\nsettings = {}\nsize = "components.spring.step"',
-        "study: one size must serve all refinements that name one; found "
-        "components.spring.step, end. Name the same, or none.",
+        '[[study]]\nlabel = "b"\nsettings = {}\nsize = "components.spring.mass"',
+        "study: one size must serve all refinements of the model; found "
+        "components.spring.mass, end. Name the same, or say what each refines with refines.",
     ),
 }  # fmt: skip
 

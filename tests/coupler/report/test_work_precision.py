@@ -1,0 +1,81 @@
+"""What a work-precision diagram shows."""
+
+import pytest
+from matplotlib.figure import Figure
+
+from quintet.coupler.measures.convergence import as_table, observed_order
+from quintet.coupler.report import work_precision
+from quintet.coupler.report.work_precision import draw, pareto_front
+
+
+def row(label, cpu, errors, met=True, kind="spacing", size=None):
+    ladders = [kind] if size else []
+    return {
+        "label": label, "status": "done", "cpu": cpu, "errors": errors, "met": met, "kind": kind,
+        "ladders": ladders, "sizes": {kind: size}, "within": dict.fromkeys(errors, 1e-2),
+        "units": dict.fromkeys(errors, "m"),
+    }  # fmt: skip
+
+
+def test_the_front_holds_what_no_other_point_beats():
+    costs, errors = [1.0, 2.0, 3.0, 2.0, 4.0], [0.5, 0.2, 0.3, 0.1, 0.1]
+    assert pareto_front(costs, errors) == [0, 3]
+    assert pareto_front([2.0], [1.0]) == [0] and pareto_front([], []) == []
+
+
+@pytest.fixture
+def drawn(monkeypatch, tmp_path):
+    """Draw rows; return the figure before it is written."""
+    figures = []
+
+    def keep(figure, out):
+        figure.canvas.draw()
+        figures.append(figure)
+        return out
+
+    def make(rows, name="study"):
+        names = list(rows[0]["errors"])
+        sized = [one for one in rows if one["ladders"]]
+        orders = {}
+        for expected in names:
+            pairs = [(one["sizes"]["spacing"], one["errors"][expected]) for one in sized]
+            orders[expected] = as_table(observed_order(*zip(*pairs, strict=True)))
+        kinds = {"spacing": {"orders": orders}} if sized else {}
+        assert draw({"scene": name, "rows": rows, "kinds": kinds}, tmp_path / "study.png")
+        return figures[-1]
+
+    monkeypatch.setattr(work_precision, "save", keep)
+    return make
+
+
+def test_it_has_a_legend_a_front_and_triangles_with_their_slope(drawn):
+    ladder = [row(f"{h} m", h**-2, {"end": h**3}, h < 0.2, size=h) for h in (0.4, 0.2, 0.1)]
+    figure = drawn([*ladder, row("other", 50.0, {"end": 0.1}, None, "model")])
+    (legend,) = figure.legends
+    words = {text.get_text() for text in legend.get_texts()}
+    assert {"spacing, all met", "spacing, not all met", "model", "Pareto front"} <= words
+    assert {"within", "slope of spacing over time"} <= words
+    (panel,) = figure.axes
+    assert panel.get_xscale() == panel.get_yscale() == "log"
+    assert "-1.5" in {text.get_text() for text in panel.texts}  # h³ over h⁻²
+    assert "spacing: order 3.00" in panel.get_title()
+    (front,) = (line for line in panel.lines if line.get_label() == "Pareto front")
+    assert len(front.get_xdata()) == 3
+
+
+def test_no_title_runs_off(drawn):
+    long = "pressure on the wall behind the column, half way up, " * 4
+    rows = [row(f"{h} m", h**-2, {long: h**3, "b": h}, size=h) for h in (0.4, 0.2, 0.1)]
+    figure = drawn(rows, "a_scene_with_a_name_that_is_as_long_as_it_can_be_" * 4)
+    assert isinstance(figure, Figure)
+    renderer, whole = figure.canvas.get_renderer(), figure.bbox
+    for text in (figure._suptitle, *(panel.title for panel in figure.axes)):
+        box = text.get_window_extent(renderer)
+        assert box.x0 >= whole.x0 and box.x1 <= whole.x1 and box.y1 <= whole.y1, text
+    left, right = (panel.title.get_window_extent(renderer) for panel in figure.axes)
+    assert left.x1 < right.x0
+
+
+def test_without_errors_nothing_is_drawn(tmp_path):
+    rows = [row("a", 1.0, {})]
+    assert draw({"scene": "x", "rows": rows, "kinds": {}}, tmp_path / "study.png") is None

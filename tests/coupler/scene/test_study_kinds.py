@@ -1,0 +1,82 @@
+"""What a refinement refines, and which orders it contributes to."""
+
+import copy
+
+import pytest
+
+from quintet.coupler.scene.overrides import put
+from quintet.coupler.scene.study_table import kind_of, read_refinements
+
+
+def read(tables, scene):
+    def make_variant(settings):
+        table = copy.deepcopy(scene)
+        return table, [m for path, value in settings.items() for m in put(table, path, value)]
+
+    return read_refinements(tables, make_variant)
+
+
+def refinement(label, size="", **settings):
+    refines = {"refines": settings.pop("refines")} if "refines" in settings else {}
+    return {"label": label, "settings": settings, **({"size": size} if size else {}), **refines}
+
+
+@pytest.mark.parametrize(
+    "path, has_links, kind",
+    [
+        ("window", True, "coupling"),
+        ("window", False, "time step"),
+        ("groups.slow.window", True, "coupling"),
+        ("iteration.tolerance", True, "coupling"),
+        ("links.0.relaxation", True, "coupling"),
+        ("components.bar.courant", False, "time step"),
+        ("components.ball.fixed_step", True, "time step"),
+        ("components.water.spacing", True, "spacing"),
+        ("components.gas.plate.layers.first_spacing", False, "spacing"),
+        ("components.gas.sphere.layers.count", False, "spacing"),
+        ("components.bar.parts.0.elements.1", False, "spacing"),
+        ("components.water.viscosity.artificial", False, "model"),
+        ("", False, "model"),
+    ],
+)
+def test_the_kind_follows_from_the_path_of_the_size(path, has_links, kind):
+    assert kind_of(path, has_links) == kind
+
+
+SCENE = {"window": 0.1, "links": [{}], "water": {"spacing": 0.1, "depth": 2.0}}
+
+
+def test_a_refinement_counts_for_each_kind_from_which_it_differs_in_the_size_alone():
+    ladder = [refinement(f"{h} m", "water.spacing", **{"water.spacing": h}) for h in (0.4, 0.2)]
+    windows = [
+        refinement(f"{w} s", "window", window=w, **{"water.spacing": 0.2}) for w in (0.4, 0.2)
+    ]
+    other = refinement("deep", "water.spacing", **{"water.spacing": 0.1, "water.depth": 4.0})
+    refinements, mistakes = read([*ladder, *windows, other], SCENE)
+    assert not mistakes
+    assert [one.kind for one in refinements] == 2 * ["spacing"] + 2 * ["coupling"] + ["spacing"]
+    assert [one.ladders for one in refinements] == [
+        ("spacing",), ("spacing", "coupling"), ("coupling",), ("coupling",), ("spacing",),
+    ]  # fmt: skip
+    assert refinements[1].sizes == {"spacing": 0.2, "coupling": 0.1}
+    assert refinements[2].sizes == {"spacing": 0.2, "coupling": 0.4}
+    assert refinements[0].varied == {"water.spacing": 0.4, "window": 0.1, "water.depth": 2.0}
+
+
+def test_what_is_refined_may_be_said():
+    said = refinement("a", "water.depth", refines="time step", **{"water.depth": 1.0})
+    (one,), mistakes = read([said], SCENE)
+    assert one.kind == "time step" and not mistakes
+    (one,), _ = read([refinement("a", refines="spacing")], SCENE)
+    assert one.kind == "spacing" and one.size is None and one.ladders == ()
+    _, mistakes = read([refinement("a", refines="mesh")], SCENE)
+    assert "study.a.refines" in mistakes[0] and "'coupling', 'time step', 'spacing'" in mistakes[0]
+
+
+def test_one_size_serves_all_refinements_of_a_kind():
+    two = [refinement("a", "water.depth"), refinement("b", "water.spacing", refines="model")]
+    _, mistakes = read(two, SCENE)
+    assert mistakes == [
+        "study: one size must serve all refinements of the model; found water.depth, "
+        "water.spacing. Name the same, or say what each refines with refines."
+    ]
