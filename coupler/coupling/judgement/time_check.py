@@ -62,7 +62,7 @@ class TimeCheck:
             return  # what is late belongs to a window of another length
         errors.due, self._start = False, dict(coupling.outputs)
         try:
-            self._pieces = step_in_pieces(coupling, ticks, PIECES)
+            (self._pieces,) = step_in_pieces(coupling, ticks, (PIECES,))
         except TrialFailed as error:
             errors.skipped = str(error)
 
