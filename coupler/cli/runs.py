@@ -35,6 +35,9 @@ CHAOS = (
     "disturb the run on purpose at places that this seed chooses: kill, stop and slow down "
     "processes, delay, drop, duplicate and corrupt messages, fill the disk"
 )
+ERROR_BAR = (
+    "estimate the error that the coupling makes in the watched quantities: --set error_bar.on=true"
+)
 COMPILED = "scenes, or kinds, which stand for all scenes that use them (default: all scenes)"
 
 
@@ -47,6 +50,7 @@ def add_commands(command: Command) -> None:
     running.add_argument("--resume", type=Path, metavar="DIR", help=RESUME)
     running.add_argument("--elsewhere", action="append", default=[], metavar="NAME", help=ELSEWHERE)
     running.add_argument("--grace", type=seconds, default=0.0, metavar="SECONDS", help=GRACE)
+    running.add_argument("--error-bar", action="store_true", help=ERROR_BAR)
     running.add_argument("--chaos", type=seed, metavar="SEED", help=CHAOS)
     running.add_argument("--inside-mpi", action="store_true", help=argparse.SUPPRESS)
     joining = command("join", join, "start one component here and join it to a coupler elsewhere")
@@ -121,6 +125,8 @@ def _begun(options: argparse.Namespace) -> tuple["Scene", Path | None, None]:
     """Read the scene of a new run; return it with the folder that is given for the run."""
     if options.scene is None:
         raise SceneError("run needs a scene, or --resume DIR. Give one.")
+    if options.error_bar:
+        options.settings.append("error_bar.on=true")
     return load_scene(options), options.out, None
 
 
@@ -134,6 +140,8 @@ def _resumed(options: argparse.Namespace) -> tuple["Scene", Path, Path]:
         raise SceneError("--resume goes on in the folder of the run. Remove --out.")
     if options.force:
         raise SceneError("--resume replaces nothing. Remove --force.")
+    if options.error_bar:
+        raise SceneError("--resume goes on as the run began. Remove --error-bar.")
     folder = options.resume.resolve()
     check_ours(folder, "run")
     snapshot = snapshots.latest(folder, options.inside_mpi)

@@ -46,6 +46,7 @@ class Outcome:
     doi: str = ""
     licence: str = ""
     scale: float | None = None  # what a relative error is relative to; None: nothing
+    error_bar: float | None = None  # of the coupling, where the run estimates it
 
 
 def check(
@@ -130,7 +131,18 @@ def _check_unit(expectation: Expectation, field: Field) -> list[str]:
 
 
 def curve(expectation: Expectation, recording: "Recording") -> Curve:
-    """Return the computed curve, offset and scaled; an impulse as its mean rate at mid-window."""
+    """Return the computed curve as it is measured: averaged, and from its level on."""
+    return _prepared(expectation, whole_curve(expectation, recording))
+
+
+def _prepared(expectation: Expectation, whole: Curve) -> Curve:
+    if expectation.moving_mean and len(whole.times) > 1:
+        whole = time_series.moving_mean(whole, expectation.moving_mean)
+    return _since_level(whole, expectation.from_level)
+
+
+def whole_curve(expectation: Expectation, recording: "Recording") -> Curve:
+    """Return the recorded curve, offset and scaled; an impulse as its mean rate at mid-window."""
     ports = recording.ports(expectation.component)
     fields = fields_of(ports)
     if mistakes := _check_field(expectation, fields, ports):
@@ -150,10 +162,7 @@ def curve(expectation: Expectation, recording: "Recording") -> Curve:
     elif values.ndim > 2:
         values = np.linalg.norm(values.reshape(*values.shape[:2], -1), axis=2)
     values = values[:, 0] if isinstance(item, int) else getattr(values, item)(axis=1)
-    whole = Curve(times, expectation.scale * (values + expectation.offset))
-    if expectation.moving_mean and len(times) > 1:
-        whole = time_series.moving_mean(whole, expectation.moving_mean)
-    return _since_level(whole, expectation.from_level)
+    return Curve(times, expectation.scale * (values + expectation.offset))
 
 
 def _since_level(curve: Curve, level: float | None) -> Curve:
@@ -275,10 +284,17 @@ def _value(
     expectation: Expectation, recording: "Recording", folder: Path
 ) -> tuple[float, float | None]:
     """Measured value, nan if there is none, and the time [s] that the run did not reach."""
-    if len(recording.times(expectation.component)) < 2:  # no window was finished
+    times = recording.times(expectation.component)
+    if len(times) < 2:  # no window was finished
         return math.nan, None
-    computed = curve(expectation, recording)
-    run_end = last = float(recording.times(expectation.component)[-1])  # s
+    return value_of(expectation, whole_curve(expectation, recording), float(times[-1]), folder)
+
+
+def value_of(
+    expectation: Expectation, whole: Curve, run_end: float, folder: Path
+) -> tuple[float, float | None]:
+    """Measure a curve of a run that ended at a time [s]; see `_value`."""
+    computed, last = _prepared(expectation, whole), run_end
     if expectation.from_level is not None:
         last = float(computed.times[-1])
         if math.isnan(last):

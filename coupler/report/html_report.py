@@ -84,6 +84,7 @@ def render(run: Run) -> str:
         done=results.get("status") == "done",
         outcomes=[_outcome(outcome) for outcome in results.get("expect") or []],
         references=run_tables.references(results),
+        has_bars=any(each.get("error_bar") is not None for each in results.get("expect") or []),
         pictures=_pictures(run),
         parts=[part for part in _parts(run) if not part.is_empty],
         machine=_machine(results.get("machine") or {}),
@@ -115,7 +116,9 @@ def _parts(run: Run) -> list[Part]:
     notes = [
         f"{name}: {note}" for name, told in (results.get("notes") or {}).items() for note in told
     ]
+    bars = run_tables.error_bars(results)
     return [
+        Part(bars.title, [run_tables.error_bar_notes(results)] if bars.rows else [], bars),
         Part(
             "Balances",
             [text for text in balance if text],

@@ -34,16 +34,21 @@ class TableOfRun:
 
 def expectations(run: Mapping[str, Any]) -> TableOfRun:
     """What was expected, and what came of it."""
+    outcomes = run.get("expect") or []
+    # A column that few runs have.
+    has_bars = any(outcome.get("error_bar") is not None for outcome in outcomes)
+    bar = {"error_bar": "± by coupling"} if has_bars else {}
+    keys = {"value": "value", **bar, "reference": "reference", "within": "within"}
     rows = [
         [
             met(outcome),
             outcome.get("name", "?"),
             outcome.get("unit", ""),
-            *(number(outcome.get(key)) for key in ("value", "reference", "within")),
+            *(number(outcome.get(key)) for key in keys),
         ]
-        for outcome in run.get("expect") or []
+        for outcome in outcomes
     ]
-    names = ["", "expectation", "unit", "value", "reference", "within"]
+    names = ["", "expectation", "unit", *keys.values()]
     return TableOfRun("Expectations", names, 3, rows)
 
 
@@ -53,6 +58,27 @@ def references(run: Mapping[str, Any]) -> TableOfRun:
     rows = [[str(outcome.get(key) or "-") for key in keys] for outcome in run.get("expect") or []]
     names = ["expectation", "kind", "read from", "source", "DOI", "licence of the data"]
     return TableOfRun("References", names, len(names), rows)
+
+
+def error_bars(run: Mapping[str, Any]) -> TableOfRun:
+    """Error that the coupling makes in each watched quantity: in a window, and in the value."""
+    bars = run.get("error_bar") or {}
+    rows = [
+        [row["name"], *(number(row[key]) for key in ("window", "value", "order"))]
+        for row in bars.get("watched") or []
+    ]
+    share = f"{100.0 * bars.get('confidence', 0.0):g} %"
+    names = ["quantity", "± of a window", "± of the value", "order"]
+    return TableOfRun(f"Error by the coupling, with {share} confidence", names, 1, rows)
+
+
+def error_bar_notes(run: Mapping[str, Any]) -> str:
+    """From how many windows the error bars are, and why there are no more."""
+    bars = run.get("error_bar")
+    if not bars:
+        return ""
+    text = f"Error bars: from {len(bars['windows'])} of {run.get('windows', 0)} windows"
+    return f"{text}; no more, as {bars['skipped']}" if bars["skipped"] else text
 
 
 def met(outcome: Mapping[str, Any]) -> Text:

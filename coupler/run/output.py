@@ -78,6 +78,7 @@ class OutputWriter:
         self._now = 0  # ticks
         self._windows = Windows(1.0, 1)
         self._recorder: Recorder | None = None
+        self._recorded: dict[str, list[str]] = {}  # fields of each component
         self._progress: ProgressReport | None = None
         self._files: dict[str, VtkHdf] = {}
         self._shows = bool(scene.file.output.interval or scene.file.output.pictures)
@@ -95,6 +96,8 @@ class OutputWriter:
             raise SceneError(lacking)
         self.done, self._now = self._windows.done, self._windows.now
         self.time = self._began = self._windows.time
+        asked = self.scene.asked_outputs()
+        self._recorded = {name: coupling.exchange.wanted(name, asked[name]) for name in asked}
         if self.first is not None:
             self._go_on()
         self.begun = True
@@ -113,7 +116,7 @@ class OutputWriter:
         text = (self.folder / "scene.toml").read_text(encoding="utf-8")
         recorder = Recorder(path, self.folder.name, text, self._windows.tick)
         for name, component in self.scene.components.items():
-            ports = only_fields(component.gives, coupling.outputs[name])
+            ports = only_fields(component.gives, self._recorded[name])
             samples = coupling.exchange.samples_of(name)
             recorder.component(name, ports, {**described[name], **samples})
         return recorder
@@ -203,7 +206,10 @@ class OutputWriter:
         if self._recorder:
             for name, component in coupling.components.items():
                 instant = Instant(self._windows.time, self._windows.now, component.stable)
-                self._recorder.add(name, instant, coupling.outputs[name])
+                outputs = coupling.outputs[name]  # error bars may look at more of them
+                self._recorder.add(
+                    name, instant, {key: outputs[key] for key in self._recorded[name]}
+                )
 
     def _note(self, coupling: Coupling) -> None:
         """Ask every component for its totals, and for what there is to see of it."""

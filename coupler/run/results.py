@@ -9,7 +9,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from quintet.coupler.coupling.participant import ComponentFailed, Participant
 from quintet.coupler.coupling.schedule import Costs
@@ -29,6 +29,9 @@ from quintet.coupler.scene.planned_times import cores_here, serial_of
 from quintet.coupler.scene.scene import ComponentPlan, OutputSettings, Scene
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.serving.serve import peak_memory
+
+if TYPE_CHECKING:
+    from quintet.coupler.coupling.judgement.error_bar import ErrorBar
 
 DONE, UNMET, BAD, FAILED, INTERRUPTED = 0, 1, 2, 3, 130  # exit status
 PACKAGES = ("quintet", "numpy", "numba", "mpi4py", "eclipse-zenoh", "h5py", "msgpack")
@@ -58,6 +61,21 @@ def outcomes(scene: Scene, folder: Path) -> list[Outcome]:
     except SceneError as error:
         print(f"quintet: {error}", file=sys.stderr)
         return [_unknown(expectation) for expectation in scene.expect]
+
+
+def with_error_bars(
+    bar: "ErrorBar", scene: Scene, folder: Path, outcomes: list[Outcome]
+) -> tuple[list[Outcome], dict[str, Any]]:
+    """Put error bars beside outcomes; return them, and what ``results.json`` has of the bars."""
+    # Only runs with error bars load it.
+    from quintet.coupler.run.error_bars import beside, summary
+
+    path = folder / "recording.h5"
+    if not path.exists():
+        return outcomes, {}
+    with Recording(path) as recording:
+        bars = summary(bar, scene, recording)
+    return beside(outcomes, bars["watched"]), {"error_bar": bars}
 
 
 def _outcome(expectation: Expectation, recording: Recording, folder: Path) -> Outcome:

@@ -7,7 +7,7 @@ import threading
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 import tomli_w
 
@@ -43,6 +43,9 @@ from quintet.coupler.scene.predicted_limits import beyond_limits
 from quintet.coupler.scene.scene import Scene
 from quintet.interfaces.errors import DiskError, SceneError
 from quintet.interfaces.serving.process import STARTER
+
+if TYPE_CHECKING:
+    from quintet.coupler.coupling.judgement.error_bar import ErrorBar
 
 
 class Closable(Protocol):
@@ -99,7 +102,8 @@ class ActiveRun:
             snapshots.check_files(snapshot)
         size, lengths = snapshots.file_sizes(snapshot) if snapshot else (0, {})
         self.ledger = Ledger(self.exchange, folder / LEDGER, size)
-        self.judgement = Judgement(self.ledger.accounts)
+        self.error_bar = error_bar_of(scene)
+        self.judgement = Judgement(self.ledger.accounts, self.error_bar)
         self.logs = {
             name: ConvergenceLog(folder / log_file(name), lengths.get(name, 0))
             for name in scene.coupling.iterated()
@@ -146,6 +150,8 @@ class ActiveRun:
         path = self.snapshot
         restore = partial(snapshots.restore, judgement=self.judgement, path=path) if path else None
         asked = scene.asked_outputs()
+        if self.error_bar:
+            asked = {name: keys | self.error_bar.needs[name] for name, keys in asked.items()}
         end = run(coupling, scene.file.end, self.writer, asked, self.judgement, restore)
         for file in self.files:
             file.close()
@@ -272,6 +278,16 @@ def disturbance_of(scene: Scene) -> Disturbance:
     return Chaos(scene)
 
 
+def error_bar_of(scene: Scene) -> "ErrorBar | None":
+    """What estimates the error of the coupling, where a run wants it."""
+    if not scene.file.error_bar.on:
+        return None
+    # Only runs with error bars load it.
+    from quintet.coupler.run.error_bars import error_bar_of as make
+
+    return make(scene)
+
+
 def log_files(scene: Scene, folder: Path) -> dict[str, Path]:
     """Logs of the components that are processes of their own on this host."""
     if scene.transport == "memory":
@@ -312,6 +328,9 @@ def conclude(run: ActiveRun) -> int:
     scene, folder, outcome = run.scene, run.folder, run.outcome
     ended = outcome["status"] in ("done", "interrupted")
     outcomes = results.outcomes(scene, folder) if ended else []
+    bars: dict[str, Any] = {}
+    if run.error_bar and ended:
+        outcomes, bars = results.with_error_bars(run.error_bar, scene, folder, outcomes)
     content = {
         **results.headline(scene, outcome),
         "expect": results.expectations(outcomes),
@@ -319,6 +338,7 @@ def conclude(run: ActiveRun) -> int:
         "repetitions": run.costs.repetitions,
         "unconverged": run.costs.unconverged,
         "time_errors": run.judgement.time.errors.summary(),
+        **bars,
         "notes": notes(run),
         "timing": results.timing(run.participants, run.clock(), run.costs, run.energy.joules()),
         "advice": results.advise(scene, run.participants),

@@ -144,7 +144,12 @@ def unknown_outputs(file: SceneFile, components: dict[str, ComponentPlan]) -> li
         for name, component in components.items()
         for field in component.shows
     ]
-    asked = (("fields", file.output.fields, known), ("colours", file.output.colours, shown))
+    output = file.output
+    asked = (
+        ("fields", output.fields, known),
+        ("watch", output.watch, known),
+        ("colours", output.colours, shown),
+    )
 
     def remedy(path: str) -> str:
         name, _, field = path.partition(".")
@@ -158,3 +163,27 @@ def unknown_outputs(file: SceneFile, components: dict[str, ComponentPlan]) -> li
         for path in paths
         if path not in there and not path.startswith(unread)
     ]
+
+
+def nothing_to_watch(
+    file: SceneFile, links: list[Link], expect: list[Expectation]
+) -> Iterator[str]:
+    """Say what an error bar lacks: links, quantities, or the recording of their curves."""
+    if not file.error_bar.on:
+        return
+    if not links:
+        yield "error_bar.on needs links, whose coupling errs; found none. Remove error_bar."
+    if not expect and not file.output.watch:
+        yield (
+            "error_bar.on needs a quantity to watch; found none. Name a field in output.watch, or "
+            "add [[expect]]."
+        )
+    if not file.output.record:
+        yield "error_bar.on needs output.record = true; found false. Record the run."
+    for link in links:
+        demands = link.demands()
+        if demands.relaxation or demands.settles:
+            yield (
+                f"error_bar.on needs links that step in time; link {link.name} is an iteration "
+                "towards a state of rest. Remove error_bar."
+            )

@@ -72,7 +72,9 @@ def is_index(text: str, among: list[Any]) -> bool:
 
 def _may_be_made(heads: list[str]) -> bool:
     """Whether a scene may lack the table: its own, or inside a component's, which checks it."""
-    return heads in (["output"], ["iteration"]) or (heads[0] == "components" and len(heads) > 2)
+    return heads in (["output"], ["iteration"], ["error_bar"]) or (
+        heads[0] == "components" and len(heads) > 2
+    )
 
 
 def tell_repeated(settings: Iterable[str], swaps: Iterable[str]) -> None:

@@ -13,7 +13,13 @@ from quintet.coupler.measures.evaluation import check
 from quintet.coupler.measures.expectation import Expectation
 from quintet.coupler.scene.component_tables import read_components, require_components
 from quintet.coupler.scene.foreign_code import announce, trusted_tables
-from quintet.coupler.scene.groups import begins_wrong, lay_out, refused, unknown_outputs
+from quintet.coupler.scene.groups import (
+    begins_wrong,
+    lay_out,
+    nothing_to_watch,
+    refused,
+    unknown_outputs,
+)
 from quintet.coupler.scene.link_tables import read_links
 from quintet.coupler.scene.needs import refused_times
 from quintet.coupler.scene.overrides import put_preset, put_set
@@ -166,6 +172,7 @@ def _check(
             components = {name: components[name] for name in coupling.components()}
             mistakes += refused(coupling, components, links)
             mistakes += unknown_outputs(file, components)
+            mistakes += nothing_to_watch(file, links, expect)
             mistakes += refused_times(file, components, coupling, links)
             mistakes += [] if mistakes else begins_wrong(components, links, expect)
         if file.window != "auto" and file.window > file.end:

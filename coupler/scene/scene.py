@@ -12,6 +12,7 @@ from quintet.coupler.coupling.iteration.settings import IterationSettings
 from quintet.coupler.coupling.link import Link
 from quintet.coupler.coupling.plan import CouplingPlan, Scheme
 from quintet.coupler.measures.expectation import Expectation
+from quintet.coupler.measures.watched import ErrorBarSettings
 from quintet.interfaces.component import Field, Fields, Port
 from quintet.interfaces.lines.endpoint import Security
 from quintet.interfaces.manifest import Manifest, Plan
@@ -94,6 +95,9 @@ class OutputSettings:
         Whether every exchange is recorded.
     fields
         ``"component.port.field"``: recorded though no link reads them.
+    watch
+        ``"component.port.field"``: recorded too, and their coupling error is estimated beside that
+        of the expectations where `error_bar.on` is set.
     """
 
     interval: NotNegative = 0.0
@@ -105,6 +109,7 @@ class OutputSettings:
     snapshots: NotNegative = 0.0
     record: bool = True
     fields: tuple[str, ...] = ()
+    watch: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         if self.region and not all(low < high for low, high in zip(*self.region, strict=True)):
@@ -153,6 +158,8 @@ class SceneFile:
         How windows are repeated, under the scheme iterated.
     output
         What a run leaves.
+    error_bar
+        Estimate of the error of the coupling.
     """
 
     name: str
@@ -170,6 +177,7 @@ class SceneFile:
     restarts: Annotated[int, pydantic.Field(ge=0, le=1000)] = 0
     iteration: IterationSettings = IterationSettings()
     output: OutputSettings = OutputSettings()
+    error_bar: ErrorBarSettings = ErrorBarSettings()
 
 
 @dataclass(slots=True)
@@ -267,7 +275,7 @@ class Scene:
         asked: dict[str, set[str]] = {name: set() for name in self.components}
         for expectation in self.expect:
             asked[expectation.component].add(expectation.field)
-        for path in self.file.output.fields:
+        for path in (*self.file.output.fields, *self.file.output.watch):
             name, _, key = path.partition(".")
             asked[name].add(key)
         return asked

@@ -190,8 +190,8 @@ def sample(whole: Array, pieces: Array, start: Array | None, kind: str) -> Sampl
         Of the field (`Field.kind`); q and -q are the same rotation.
     """
     if kind == "rotation":
-        pieces = _same_branch(whole, pieces)
-        start = None if start is None else _same_branch(whole, start)
+        pieces = same_branch(whole, pieces)
+        start = None if start is None else same_branch(whole, start)
     difference = whole - pieces
     change = whole if start is None else whole - start
     size = norm(change)
@@ -200,6 +200,7 @@ def sample(whole: Array, pieces: Array, start: Array | None, kind: str) -> Sampl
     return Sample(norm(difference), size, along, norm(whole), *ends)
 
 
-def _same_branch(ahead: Array, rotation: Array) -> Array:
+def same_branch(ahead: Array, rotation: Array) -> Array:
+    """A rotation as the quaternion, of its two, that is nearer to another."""
     flipped = np.sum(ahead * rotation, axis=-1, keepdims=True) < 0.0
     return np.where(flipped, -rotation, rotation)
