@@ -31,7 +31,8 @@ from quintet.interfaces.params import read
 ROOT = Path(__file__).resolve().parents[1]
 FOLDERS = ("interfaces", "components", "coupler", "scenarios")
 TEXTS = [ROOT / "README.md", *(ROOT / folder / "README.md" for folder in FOLDERS)]
-TEXTS += sorted(ROOT.glob("components/*/**/*.md")) + sorted(ROOT.glob("scenarios/*/README.md"))
+TEXTS += sorted(ROOT.glob("coupler/*/README.md")) + sorted(ROOT.glob("components/*/**/*.md"))
+TEXTS += sorted(ROOT.glob("scenarios/*/README.md"))
 TEXTS += sorted(ROOT.glob(".github/*.md")) + sorted(ROOT.glob(".docs/*.md"))
 TABLES = re.compile(r"<!-- describe .+?<!-- described -->", re.DOTALL)
 FENCE = re.compile(r"^```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)

@@ -139,3 +139,19 @@ def test_an_expectation_without_a_value_says_why(tmp_path, capsys):
     one = RESULTS["expect"][0] | {"value": None, "met": False, "reason": "never passed"}
     said = _shown(tmp_path, RESULTS | {"expect": [one]}, capsys)
     assert f"{one['name']}: not met: never passed" in " ".join(said.split())
+
+
+def test_show_puts_error_bars_beside_the_values_where_a_run_has_them(tmp_path, capsys):
+    assert "±" not in _shown(tmp_path, RESULTS, capsys)
+    found = copy.deepcopy(RESULTS)
+    found["expect"][0]["error_bar"] = 0.002
+    row = {"name": "top.x [rms]", "window": 3e-6, "value": 0.002, "order": 1}
+    found["error_bar"] = {
+        "confidence": 0.9, "windows": [1, 125], "skipped": "dust keeps no state.", "watched": [row]
+    }  # fmt: skip
+    text = _shown(tmp_path, found, capsys)
+    assert _line(text, "met ")[-4:] == ["0.0437", "0.002", "0", "0.05"]
+    assert _line(text, "late")[-4:] == ["-", "-", "1.5", "0.1"]
+    assert "Error by the coupling, with 90 % confidence" in text
+    assert "3e-06" in text
+    assert "Error bars: from 2 of 1234 windows; no more, as dust keeps no state." in text
