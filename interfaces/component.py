@@ -113,6 +113,9 @@ class Totals:
     potential: float = 0.0  # J, gravity
     internal: float = 0.0  # J, elastic and thermal
     work: float = 0.0  # J, done on it so far by what no link brings: loads of the scene, walls
+    # J that friction, viscosity or damping took so far and `internal` and `work` do not hold; 0
+    # where they hold all of it; None: not known.
+    dissipated: float | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -49,6 +49,7 @@ def totals(
         potential=potential,
         internal=internal_energy,
         work=sum(work),
+        dissipated=0.0,  # plastic work is internal, damping is work
     )
 
 

@@ -140,6 +140,7 @@ def totals(
         kinetic=kinetic,
         internal=float(now[4]) - kinetic,
         work=state.work,
+        dissipated=0.0,  # friction heats the gas
     )
 
 

@@ -167,6 +167,7 @@ class ParticleLattice(Component):
             kinetic=kinetic,
             internal=potential,
             work=self.budget.outer_work(self.wall.rows),
+            dissipated=0.0,
         )
 
     def warnings(self) -> dict[str, str]:

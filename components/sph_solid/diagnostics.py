@@ -39,6 +39,7 @@ def totals(state: State, mass: Array, carried: Whole, gravity: Vector, ranks: Ra
         kinetic=0.5 * float(sums[7]),
         potential=-float(sums[8]),
         internal=float(sums[9]),
+        dissipated=0.0,  # viscosity and plastic work heat the particles
     )
 
 

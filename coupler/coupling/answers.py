@@ -23,6 +23,7 @@ TOTALS = {
     "internal": 0,
     "work": 0,
 }
+DISSIPATED = "dissipated"  # of totals: a number or None, where a component knows it
 
 
 def _is_number(value: Any) -> bool:
@@ -52,7 +53,10 @@ def _is_motion(value: Any) -> bool:
 
 
 def _are_totals(value: Any) -> bool:
-    if not isinstance(value, dict) or value.keys() != TOTALS.keys():
+    if not isinstance(value, dict) or value.keys() - {DISSIPATED} != TOTALS.keys():
+        return False
+    dissipated = value.get(DISSIPATED)
+    if dissipated is not None and type(dissipated) not in NUMBERS:
         return False
     return all(
         type(value[key]) in (int, float) if not count else _is_list(value[key])

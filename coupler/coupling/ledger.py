@@ -16,6 +16,7 @@ import numpy as np
 
 from quintet.coupler.coupling.energy_balance import KINDS, EnergyBalance
 from quintet.coupler.coupling.exchange import Delivery, Exchange, WindowInputs
+from quintet.coupler.coupling.link import Transfer
 from quintet.coupler.coupling.motion_audit import MotionAudit
 from quintet.coupler.coupling.pairing import INTEGRAL
 from quintet.coupler.coupling.run_balance import RunBalance
@@ -38,7 +39,8 @@ WORK = "work"  # of totals: what is done from outside of the run
 
 COLUMNS = (
     "time name momentum_residual angular_residual impulse_x impulse_y impulse_z work_given "
-    "work_taken heat mass momentum_x momentum_y momentum_z kinetic potential internal work"
+    "work_taken heat mass momentum_x momentum_y momentum_z kinetic potential internal work "
+    "link_work dissipated"
 ).split()
 
 
@@ -111,12 +113,28 @@ class Ledger:
                 share = self.exchange.share_of(number, name, velocity.partition(".")[0])
                 work = sent[f"{key}/work"][share] if f"{key}/work" in sent else 0.0
                 account.work_given += work
+                self.energy.add_work(link.name, name, -work)
                 if self.exchange.both_count_work(number):
                     account.turnover += abs(work)
+                else:
+                    self.energy.add_work(link.name, self._partner(number, name), work)
 
     def given_for(self, number: int, outputs: Fields) -> None:
         """Book what a component gave for one transfer in a window of its coupling."""
         self._balance.book_given(number, outputs)
+        transfer = self.exchange.transfers[number]
+        heats = [pair for pair in self.exchange.sums[number] if self._is_heat(transfer, pair[1])]
+        for key, _ in heats:
+            heat = float(np.sum(column_sums(self.exchange.rows(number, outputs)[key])))
+            self.energy.add_heat(self._account(number).link, transfer.giver, -heat)
+
+    def _is_heat(self, transfer: Transfer, key: str) -> bool:
+        return self.exchange.unit(transfer.taker, key) == "W"
+
+    def _partner(self, number: int, name: str) -> str:
+        """The other side of a link."""
+        transfers = self.exchange.links[number].transfers
+        return next(side for t in transfers for side in (t.giver, t.taker) if side != name)
 
     def mapped(self, delivery: Delivery, sent: Mapping[str, Mapping[str, list[float]]]) -> None:
         """Book a mapping: sums of forces and of moments before against after.
@@ -131,6 +149,7 @@ class Ledger:
                 account.impulse[: len(total)] += total
             if unit == "W":
                 account.heat += float(total.sum())
+                self.energy.add_heat(account.link, transfer.taker, float(total.sum()))
             account.note(unit, total - column_sums(array), size(array))
             if delivery.moment is not None and self._alone(delivery):
                 moment = sent.get(transfer.giver, {}).get(f"{before}/moment")
@@ -185,9 +204,13 @@ class Ledger:
             others = [transfer for transfer in takes if transfer.taker == delivery.transfer.taker]
             alone = sum(key in transfer.fills for transfer in others) == 1
             pushed = fields[key] if alone else delivery.after[key]
-            self._account(delivery.number).work_taken += product(
-                pushed, self._mean_rate(delivery.transfer.taker, before, after, (rate, place), dt)
-            )
+            taker, account = delivery.transfer.taker, self._account(delivery.number)
+            work = product(pushed, self._mean_rate(taker, before, after, (rate, place), dt))
+            account.work_taken += work
+            self.energy.add_work(account.link, taker, work)
+            giver = delivery.transfer.giver
+            if giver not in self.exchange.works_of[self.exchange.link_of[delivery.number]]:
+                self.energy.add_work(account.link, giver, -work)
 
     def _mean_rate(
         self, name: str, before: Fields, after: Fields, keys: tuple[str, str], dt: float
@@ -219,10 +242,13 @@ class Ledger:
         for account in self.accounts.values():
             residuals = [account.momentum_residual, account.angular_residual]
             work = [account.work_given, account.work_taken, account.heat]
-            self._table.write([time, account.link, *residuals, *account.impulse, *work])
+            row = [time, account.link, *residuals, *account.impulse, *work]
+            self._table.write([*row, *[""] * (len(COLUMNS) - len(row))])
         for name, sums in totals.items():
+            link_work, heat = self.energy.brought(name)
             totals_row = [sums["mass"], *sums["momentum"], *(sums[kind] for kind in (*KINDS, WORK))]
-            self._table.write([time, name, *[""] * 8, *totals_row])
+            row = [time, name, *[""] * 7, heat, *totals_row, link_work, sums.get("dissipated")]
+            self._table.write(row)
         self._table.flush()
 
     def save(self) -> dict[str, Any]:
@@ -259,8 +285,7 @@ class Ledger:
         ]
         return {
             "links": links,
-            "energy_drift": self.energy.drift(),
-            "energy_change": self.energy.change(),
+            "energy_balance": self.energy.summary(),
             "mass_drift": self.energy.mass_drift(),
         }
 

@@ -110,7 +110,7 @@ def _outcome(outcome: Mapping[str, Any]) -> dict[str, Any]:
 def _parts(run: Run) -> list[Part]:
     """Sections behind the pictures."""
     results, ledger = run.results, run.ledger
-    balance = run_tables.energy_balance(results), run_tables.mass_changes(results)
+    masses = run_tables.mass_changes(results)
     waits = sentences(results["advice"]) if results.get("advice") else []
     components = (results.get("timing") or {}).get("components") or {}
     notes = [
@@ -121,13 +121,14 @@ def _parts(run: Run) -> list[Part]:
         Part(bars.title, [run_tables.error_bar_notes(results)] if bars.rows else [], bars),
         Part(
             "Balances",
-            [text for text in balance if text],
+            [masses] if masses else [],
             run_tables.ledger(results),
             _svg_data(figures.links(ledger)),
             "Work of the links as both sides count it, and by how much their sums disagree",
         ),
         Part(
             "Energy",
+            table=run_tables.energies(results),
             figure=_svg_data(figures.energies(ledger)),
             caption="Change since the start, by component",
         ),

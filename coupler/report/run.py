@@ -33,6 +33,8 @@ LEDGER_UNITS = {
     "kinetic": "J",
     "potential": "J",
     "internal": "J",
+    "link": "J",
+    "dissipated": "J",
 }
 
 

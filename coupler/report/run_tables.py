@@ -7,7 +7,6 @@ from typing import Any
 from rich.text import Text
 
 MASS_TOLD = 1e-3  # of a component's mass, a change that is told
-START_AND_END = 2  # totals of a run
 ROUNDING = 1e-9  # of the energy that was turned over
 
 
@@ -123,18 +122,43 @@ def ledger(run: Mapping[str, Any]) -> TableOfRun:
     return TableOfRun("Ledger", ["", *(link.get("link", "?") for link in links)], 1, rows)
 
 
-def energy_balance(run: Mapping[str, Any]) -> str:
-    """How the energy of the run changed; nothing where no component tells its energies."""
-    change = (run.get("ledger") or {}).get("energy_change")
-    if not change:
-        return ""
-    gained, lost, turned = (change[key] for key in ("gained", "lost", "turned_over"))
-    if change.get("times") == START_AND_END:  # what was turned over between them is not known
-        return f"Energy: rose by {number(gained)} J, lost {number(lost)} J from start to end"
-    return (
-        f"Energy: rose by at most {_per_cent(gained / turned)} %, lost {_per_cent(lost / turned)} %"
-        f" ({number(lost)} J of {number(turned)} J turned over)"
-    )
+ENERGIES = {  # change = outside + links + heat - lost + unexplained
+    "change": "change",
+    "outside": "work from outside",
+    "links": "work over links",
+    "heat": "heat over links",
+    "lost": "lost (dissipated)",
+    "unexplained": "unexplained",
+    "coupling": "of it by the coupling",
+    "gained": "largest rise unexplained",
+}
+
+
+def energies(run: Mapping[str, Any]) -> TableOfRun:
+    """The energy balance in J and per cent: a column for the run and each of its components.
+
+    No rows where no component reports its energies.
+    """
+    balance = (run.get("ledger") or {}).get("energy_balance")
+    if not balance:
+        return TableOfRun("", [], 1, [])
+    scale, components = balance["scale"], balance["components"]
+    columns = components if len(components) == 1 else {"run": balance["run"], **components}
+    rows = [
+        [label, *(_share(column[key], scale) for column in columns.values())]
+        for key, label in ENERGIES.items()
+        if any(abs(column[key] or 0.0) > ROUNDING * scale for column in columns.values())
+    ]
+    return TableOfRun(f"Energy [J], 100 % = {number(scale)} J", ["", *columns], 1, rows)
+
+
+def _share(energy: float | None, scale: float) -> str:
+    """An energy [J] and what per cent of the scale it is; a dash where it is not known."""
+    if energy is None:
+        return "-"
+    if abs(energy) <= ROUNDING * scale:
+        return "0"
+    return f"{energy:.3g} ({float(f'{100.0 * energy / scale:.2g}'):g} %)"
 
 
 def mass_changes(run: Mapping[str, Any]) -> str:
@@ -148,11 +172,6 @@ def mass_changes(run: Mapping[str, Any]) -> str:
         elif abs(share) > MASS_TOLD:
             said.append(f"mass of {name} changed by {100.0 * share:+.2g} % ({drift['kg']:+.3g} kg)")
     return "Mass: " + ", ".join(said) if said else ""
-
-
-def _per_cent(share: float) -> str:
-    """A share in per cent; what is rounding is 0."""
-    return f"{float(f'{100.0 * share:.2g}'):g}" if share > ROUNDING else "0"
 
 
 def timing(run: Mapping[str, Any]) -> TableOfRun:

@@ -15,7 +15,7 @@ from quintet.coupler.files.checksums import require_sealed
 from quintet.coupler.measures.advice import sentences
 from quintet.coupler.report.run_tables import (
     TableOfRun,
-    energy_balance,
+    energies,
     error_bar_notes,
     error_bars,
     expectations,
@@ -71,20 +71,14 @@ def print_results(run: Mapping[str, Any], screen: Console, frame: box.Box | None
     for warning in run.get("warnings") or []:
         said = f"Warning of {warning.get('source', '?')}: {warning.get('text', warning)}"
         screen.print(Text(said, style="red"))
-    for table in (expectations(run), error_bars(run), ledger(run), timing(run)):
+    for table in (expectations(run), error_bars(run), ledger(run), energies(run), timing(run)):
         if table.rows:
             screen.print(_drawn(table, frame))
     for outcome in run.get("expect") or []:
         if outcome.get("reason"):
             screen.print(Text(f"{outcome.get('name', '?')}: not met: {outcome['reason']}"))
     advised = sentences(run["advice"]) if run.get("advice") else []
-    for line in (
-        error_bar_notes(run),
-        energy_balance(run),
-        mass_changes(run),
-        time_shares(run),
-        *advised,
-    ):
+    for line in (error_bar_notes(run), mass_changes(run), time_shares(run), *advised):
         if line:
             screen.print(line)
     for name, notes in (run.get("notes") or {}).items():

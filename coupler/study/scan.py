@@ -231,10 +231,10 @@ def _error(scan: Scan, name: str, number: int, outcome: Row) -> float | None:
 
 def _energy_gained(result: Row) -> float | None:
     """Energy that the run gained, over that turned over; None where it was not measured."""
-    change = result.get("ledger", {}).get("energy_change")
-    if not change or not change["turned_over"]:
+    balance = result.get("ledger", {}).get("energy_balance")
+    if not balance:
         return None
-    share = change["gained"] / change["turned_over"]
+    share = balance["run"]["gained"] / balance["scale"]
     return share if math.isfinite(share) else None
 
 

@@ -258,6 +258,7 @@ class Server:
             "potential": float(totals.potential),
             "internal": float(totals.internal),
             "work": float(totals.work),
+            "dissipated": None if totals.dissipated is None else float(totals.dissipated),
         }
 
     def state(self) -> dict[str, Any]:

@@ -130,7 +130,7 @@ def test_results_have_all_that_they_promise(ran):
     for key in ("scene", "preset", "transport", "status", "windows", "time", "expect", "command"):
         assert key in results
     assert results["time"] == pytest.approx(0.02)
-    assert {"links", "energy_drift"} <= results["ledger"].keys()
+    assert {"links", "energy_balance"} <= results["ledger"].keys()
     assert results["ledger"]["links"][0]["momentum_residual"] < 1e-13
     assert {"wall", "compile", "components", "exchange", "mapping"} <= results["timing"].keys()
     assert results["timing"]["components"]["ping"]["steps"] == 20

@@ -13,7 +13,10 @@ Run = Callable[..., dict]
 
 @pytest.fixture(scope="module")
 def run_scene(tmp_path_factory: pytest.TempPathFactory) -> Run:
-    """Run a scene without its pictures; return its results, with the expectations by name."""
+    """Run a scene without its pictures; return its results, with the expectations by name.
+
+    ``energy_gained`` is the largest rise of energy that nothing explains, over that turned over.
+    """
 
     def run(scene: str, *options: str) -> dict:
         out = tmp_path_factory.mktemp(Path(scene).stem)
@@ -22,6 +25,9 @@ def run_scene(tmp_path_factory: pytest.TempPathFactory) -> Run:
             main(["run", scene, "--out", str(out), *plain, *options])
         found = json.loads((out / "results.json").read_text())
         assert ended.value.code in (0, 1), found
-        return found | {"folder": Path(out), "by_name": {e["name"]: e for e in found["expect"]}}
+        by_name = {outcome["name"]: outcome for outcome in found["expect"]}
+        balance = found["ledger"]["energy_balance"]
+        gained = balance["run"]["gained"] / balance["scale"] if balance else None
+        return found | {"folder": Path(out), "by_name": by_name, "energy_gained": gained}
 
     return run

@@ -66,4 +66,4 @@ def totals(params: FeHeatParams, model: Model, state: State) -> Totals:
     parts = np.bincount(model.part, model.volume)  # m3
     mass = float(parts @ [part.density or 0.0 for part in params.parts])
     stored = 0.0 if params.steady else float(model.capacity @ state.temperature)
-    return Totals(mass=mass, internal=stored, work=float(state.outside[0]))
+    return Totals(mass=mass, internal=stored, work=float(state.outside[0]), dissipated=0.0)

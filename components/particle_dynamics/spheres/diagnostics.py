@@ -28,6 +28,7 @@ def totals(ranks: Ranks, gravity: Array) -> Totals:
         kinetic=0.5 * float(sums[7]),
         potential=0.5 * float(sums[8]) - float(sums[9]),
         internal=float(state.sums[LOST] + state.sums[HEATED]),
+        dissipated=0.0,  # impacts and drag heat the spheres
     )
 
 

@@ -23,6 +23,7 @@ def it_counts_what_it_advances_and_what_it_holds(trial: Trial) -> None:
         "potential": totals.potential,
         "internal": totals.internal,
         "work": totals.work,
+        "dissipated": totals.dissipated or 0.0,
         "momentum": totals.momentum,
         "angular_momentum": totals.angular_momentum,
     }

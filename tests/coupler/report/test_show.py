@@ -8,6 +8,9 @@ import pytest
 from quintet.coupler.report.show import results, show
 from quintet.interfaces.errors import SceneError
 
+NO_ENERGY = dict.fromkeys(
+    ("change", "outside", "links", "heat", "lost", "unexplained", "gained", "coupling"), 0.0
+)
 RESULTS = {
     "scene": "dam_break", "preset": "quick", "transport": "zenoh", "status": "done",
     "windows": 1234, "time": 1.8,
@@ -19,8 +22,15 @@ RESULTS = {
     ],
     "ledger": {
         "links": [{"link": "water-cubes", "momentum_residual": 1e-15, "energy_residual": 2e-14}],
-        "energy_drift": 0.003,
-        "energy_change": {"gained": 3.0, "lost": 12.0, "turned_over": 1000.0},
+        "energy_balance": {
+            "scale": 1000.0,
+            "times": 5,
+            "run": {**NO_ENERGY, "change": -8.0, "outside": 4.0, "lost": 12.0, "gained": 3.0},
+            "components": {
+                "water": {**NO_ENERGY, "links": -5.0, "unexplained": None, "lost": 12.0},
+                "cubes": {**NO_ENERGY, "links": 5.0, "unexplained": 1e-13},
+            },
+        },
         "mass_drift": {
             "water": {"kg": -2.0, "relative": -0.01}, "cubes": {"kg": 1e-9, "relative": 1e-9},
         },
@@ -70,9 +80,26 @@ def test_show_leaves_out_what_no_link_carries_and_stays_narrow(tmp_path, capsys)
     assert max(map(len, text.splitlines())) <= 100
 
 
-def test_show_tells_what_energy_the_run_gained_and_lost(tmp_path, capsys):
+def test_show_tells_where_the_energy_of_the_run_and_of_each_component_went(tmp_path, capsys):
     text = _shown(tmp_path, RESULTS, capsys)
-    assert "Energy: rose by at most 0.3 %, lost 1.2 % (12 J of 1000 J turned over)\n" in text
+    assert "Energy [J], 100 % = 1000 J" in text
+    assert _line(text, "lost (diss")[2:] == ["12", "(1.2", "%)", "12", "(1.2", "%)", "0"]
+    assert _line(text, "work over")[3:] == ["0", "-5", "(-0.5", "%)", "5", "(0.5", "%)"]
+    assert _line(text, "largest rise")[3:] == ["3", "(0.3", "%)", "0", "0"]
+    assert "heat over" not in text and "of it by" not in text, "no line where all are 0"
+    assert "unexplained\n" not in text, "a rise of rounding is none"
+
+
+def test_show_tells_of_one_component_without_repeating_it_for_the_run(tmp_path, capsys):
+    whole = RESULTS["ledger"]["energy_balance"]
+    water = {**whole["components"]["water"], "change": -12.0}
+    one = {**whole, "run": water, "components": {"water": water}}
+    text = _shown(tmp_path, RESULTS | {"ledger": {"links": [], "energy_balance": one}}, capsys)
+    assert _line(text, "change") == ["change", "-12", "(-1.2", "%)"]
+
+
+def test_show_tells_of_masses_that_changed(tmp_path, capsys):
+    text = _shown(tmp_path, RESULTS, capsys)
     assert "Mass: mass of water changed by -1 % (-2 kg)\n" in text, "and only of water"
     filled = {"basin": {"kg": 2.5, "relative": None}}
     text = _shown(tmp_path, RESULTS | {"ledger": {"links": [], "mass_drift": filled}}, capsys)
@@ -81,7 +108,7 @@ def test_show_tells_what_energy_the_run_gained_and_lost(tmp_path, capsys):
 
 
 def test_show_tells_nothing_of_energy_and_mass_where_no_component_has_them(tmp_path, capsys):
-    bare = {"links": [], "energy_drift": None, "energy_change": None, "mass_drift": {}}
+    bare = {"links": [], "energy_balance": None, "mass_drift": {}}
     text = _shown(tmp_path, RESULTS | {"ledger": bare}, capsys)
     assert not any(word in text for word in ("Energy", "energy", "Mass", "mass", "Balance"))
 

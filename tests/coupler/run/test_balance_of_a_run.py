@@ -1,6 +1,7 @@
 """Energy and mass that a run loses are told at its end, whatever else the scene asks for."""
 
 import json
+import re
 
 import pytest
 from spring_scene import command, write
@@ -33,9 +34,15 @@ def test_a_run_tells_the_energy_and_mass_that_it_lost(tmp_path, capfd, end):
     path.write_text(text)
     assert command("run", path, "--out", tmp_path / "out") == 0
     ledger = json.loads((tmp_path / "out" / "results.json").read_text())["ledger"]
-    lost = {"gained": 0.0, "lost": 12.0 * end, "turned_over": 12.0 * end, "times": 2}
-    assert ledger["energy_change"] == pytest.approx(lost)
+    balance = ledger["energy_balance"]
+    assert balance["times"] == 2
+    assert balance["scale"] == pytest.approx(12.0 * end)
+    for part in (balance["run"], balance["components"]["spring"]):
+        assert (part["change"], part["lost"]) == pytest.approx((-12.0 * end, 12.0 * end))
+        assert part["gained"] == 0.0
+        assert part["unexplained"] is None, "it does not report what it dissipates"
     assert ledger["mass_drift"]["spring"] == pytest.approx({"kg": -end, "relative": -0.02 * end})
     printed = capfd.readouterr().out
-    assert f"Energy: rose by 0 J, lost {12 * end:g} J from start to end\n" in printed
+    assert f"100 % = {12 * end:g} J" in printed
+    assert re.search(rf"lost \(dissipated\) +{12 * end:g} \(100 %\)\n", printed)
     assert f"mass of spring changed by {-2 * end:g} % ({-end:g} kg)" in printed

@@ -84,8 +84,8 @@ def test_errors_are_relative_to_the_scale_that_is_given(tmp_path):
 
 
 def test_energy_that_a_run_gains_is_an_error_where_a_scan_judges_it():
-    change = {"gained": 12.0, "lost": 0.0, "turned_over": 100.0, "times": 3}
-    result = {"status": "done", "expect": [], "ledger": {"energy_change": change}}
+    balance = {"scale": 100.0, "run": {"gained": 12.0}}
+    result = {"status": "done", "expect": [], "ledger": {"energy_balance": balance}}
     scan = Scan(ScanTable(parameter="step", values=(0.1, 1.0), energy=True), "step", (), {})
     row = row_of(scan, 1, result)
     assert row["errors"] == {"energy gained": 0.12} and row["verdict"] == "SILENT"
