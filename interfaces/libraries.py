@@ -9,6 +9,10 @@ EXTRAS = {
     "cryptography": "zenoh",
     "matplotlib": "pictures",
     "jinja2": "report",
+    "pandas": "tables",
+    "xarray": "tables",
+    "pyvista": "views3d",
+    "imageio": "views3d",
 }  # by the name that is imported
 
 

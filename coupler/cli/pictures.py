@@ -1,4 +1,4 @@
-"""Commands that draw and describe what runs left: draw, report."""
+"""Commands that draw, describe and hand on what runs left: draw, report, export."""
 
 import argparse
 import math
@@ -21,6 +21,12 @@ SCALE = "draw displacements so many times as large"
 OUT = "the picture: .png, .svg, .pdf or .jpg (default: DIR/drawn.png)"
 PAGE = "the page, one .html file (default: DIR/report.html)"
 REPLACE = "replace the file of --out"
+SERIES = (
+    "draw recorded fields over time instead: NAME, NAME.PORT or NAME.PORT.FIELD (default: all of "
+    "at most 1000 numbers)"
+)
+FIELDS = "NAME, NAME.PORT or NAME.PORT.FIELD (default: all of at most 1000 numbers)"
+FOLDER = "folder of the files (default: DIR/export)"
 
 
 def add_commands(command: Command) -> None:
@@ -37,6 +43,7 @@ def add_commands(command: Command) -> None:
     drawing.add_argument("--section", type=_number, metavar="M", help=SECTION)
     drawing.add_argument("--region", type=_number, nargs=6, metavar="M", help=REGION)
     drawing.add_argument("--displacement-scale", type=_above_zero, metavar="N", help=SCALE)
+    drawing.add_argument("--series", nargs="*", metavar="FIELD", help=SERIES)
     drawing.add_argument("--out", type=Path, metavar="FILE", help=OUT)
     drawing.add_argument("--force", action="store_true", help=REPLACE)
 
@@ -45,6 +52,26 @@ def add_commands(command: Command) -> None:
     reporting.add_argument("folder", type=Path, metavar="DIR")
     reporting.add_argument("--out", type=Path, metavar="FILE", help=PAGE)
     reporting.add_argument("--force", action="store_true", help=REPLACE)
+
+    text = "write recorded fields and the ledger of a run as CSV, with units in the heads"
+    exporting = command("export", export, text)
+    exporting.add_argument("folder", type=Path, metavar="DIR")
+    exporting.add_argument("fields", nargs="*", metavar="FIELD", help=FIELDS)
+    exporting.add_argument("--out", type=Path, metavar="FOLDER", help=FOLDER)
+    exporting.add_argument("--force", action="store_true", help="replace files of the same names")
+
+
+def export(options: argparse.Namespace) -> int:
+    """Write a run as CSV."""
+    # Start-up: only this command needs it.
+    from quintet.coupler.report.export import export as write_tables
+
+    exported = write_tables(options.folder, options.fields, options.out, options.force)
+    for path in exported.files:
+        print(f"written: {os.path.relpath(path)}")
+    for key in exported.left_out:
+        print(f"left out, for a row has more than 1000 numbers: {key}; name it to export it")
+    return 0
 
 
 def report(options: argparse.Namespace) -> int:
@@ -70,6 +97,8 @@ def draw(options: argparse.Namespace) -> int:
 
     if not can_draw():
         return BAD
+    if options.series is not None:
+        return _draw_series(options)
     wanted = Wanted(
         options.times,
         options.colour,
@@ -80,6 +109,24 @@ def draw(options: argparse.Namespace) -> int:
         options.displacement_scale,
     )
     out = redraw(options.folder, wanted, options.out, options.force)
+    print(f"drawn: {os.path.relpath(out)}")
+    return 0
+
+
+def _draw_series(options: argparse.Namespace) -> int:
+    """Draw recorded fields over time."""
+    # Start-up: only this command needs it.
+    from quintet.coupler.files.run_files import SERIES_DRAWN
+    from quintet.coupler.report.columns import chosen
+    from quintet.coupler.report.free_place import free_place
+    from quintet.coupler.report.redraw import FORMATS, title_of
+    from quintet.coupler.report.run import Run
+    from quintet.coupler.report.series_drawing import draw_series
+
+    fields = Run(options.folder).fields
+    keys, _ = chosen(fields, options.series)
+    place = free_place(options.folder / SERIES_DRAWN, options.out, FORMATS, options.force)
+    out = draw_series(fields, keys, place, title_of(options.folder))
     print(f"drawn: {os.path.relpath(out)}")
     return 0
 

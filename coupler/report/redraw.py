@@ -67,7 +67,7 @@ def redraw(folder: Path, wanted: Wanted, out: Path | None = None, force: bool = 
         )
     chosen = _picture(files, _output_of(folder), wanted)
     place = free_place(folder / DRAWN, out, FORMATS, force)
-    return draw_run(folder, place, chosen, _title(folder))
+    return draw_run(folder, place, chosen, title_of(folder))
 
 
 def _output_of(folder: Path) -> Mapping[str, Any]:
@@ -75,7 +75,7 @@ def _output_of(folder: Path) -> Mapping[str, Any]:
     return parse(folder / SCENE).get("output", {}) if (folder / SCENE).is_file() else {}
 
 
-def _title(folder: Path) -> str:
+def title_of(folder: Path) -> str:
     """Name of what ran, as far as the run has told."""
     if not (folder / RESULTS).is_file():
         return folder.name

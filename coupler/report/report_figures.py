@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from quintet.coupler.report.panels import CURVES, curve_panels
-from quintet.coupler.report.run import Series
+from quintet.coupler.report.recorded import Series
 
 ENERGIES = {"kinetic": "tab:blue", "potential": "tab:green", "internal": "tab:red"}
 WORKS = {"work_given": "tab:blue", "work_taken": "tab:orange"}

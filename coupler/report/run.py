@@ -3,24 +3,24 @@
 import base64
 import csv
 import io
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from rich import box
 from rich.console import Console
 
 from quintet.coupler.files.checksums import KEY, require_same
-from quintet.coupler.files.recording import NAME, Recording
 from quintet.coupler.files.run_files import LEDGER, PICTURES, SCENE
-from quintet.coupler.report import show
+from quintet.coupler.report import columns, show
+from quintet.coupler.report.recorded import RecordedFields, Series
+from quintet.coupler.report.views import Views
 from quintet.coupler.scene.read import parse
-from quintet.interfaces.component import Array, Field, fields_of
 from quintet.interfaces.errors import RunError, SceneError
-from quintet.interfaces.params import unknown
-from quintet.interfaces.units import INTEGRATED
+
+if TYPE_CHECKING:
+    import pandas
+    import xarray
 
 WIDTH = 110  # characters, of tables in a notebook
 ENDED = (0, 1, 130)  # exit status of a run that did not fail: met, not met, interrupted
@@ -38,76 +38,6 @@ LEDGER_UNITS = {
 }
 
 
-@dataclass(frozen=True, slots=True)
-class Series:
-    """Values over the time of a run; numpy functions take it as its values.
-
-    Attributes
-    ----------
-    values : array (rows, ...)
-        Of a field (rows, items, ...): row 0 is the start, row k the end of window k, or, of an
-        impulse, the integral over window k.
-    times : array (rows,), s
-    unit : str
-        Of the values.
-    """
-
-    values: Array
-    times: Array
-    unit: str
-
-    def __array__(self, dtype: Any = None, copy: bool | None = None) -> Array:
-        return np.array(self.values, dtype, copy=copy)
-
-    def __len__(self) -> int:
-        return len(self.values)
-
-    def __repr__(self) -> str:
-        span = f", {self.times[0]:g} to {self.times[-1]:g} s" if len(self.times) else ""
-        return f"Series({self.values.shape} [{self.unit}]{span})"
-
-
-class RecordedFields(Mapping[str, Series]):
-    """Recorded fields of a run by ``component.port.field``, each read when it is asked for."""
-
-    def __init__(self, folder: Path) -> None:
-        self._folder = folder
-        self._fields: dict[str, tuple[str, Field]] = {}
-        if not (folder / NAME).is_file():
-            return
-        with Recording(folder) as recording:
-            for name in recording.names:
-                for key, field in fields_of(recording.ports(name)).items():
-                    if key in recording.fields(name):
-                        self._fields[f"{name}.{key}"] = (name, field)
-
-    def __getitem__(self, key: str) -> Series:
-        if key not in self._fields:
-            raise KeyError(unknown(f"run {self._folder}: field {key}", key, self._fields))
-        name, field = self._fields[key]
-        with Recording(self._folder) as recording:
-            values = recording.field(name, key.partition(".")[2])
-            times = recording.times(name)
-        return Series(values, times, INTEGRATED[field.unit] if is_impulse(field) else field.unit)
-
-    def __contains__(self, key: object) -> bool:
-        return key in self._fields
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._fields)
-
-    def __len__(self) -> int:
-        return len(self._fields)
-
-    def __repr__(self) -> str:
-        return f"RecordedFields({', '.join(self._fields) or 'nothing recorded'})"
-
-
-def is_impulse(field: Field) -> bool:
-    """Whether a field is recorded as its integral over every window."""
-    return field.centring == "impulse"
-
-
 class Run:
     """A run: what it left in its folder.
 
@@ -118,12 +48,15 @@ class Run:
         As in ``results.json``: expectations, ledger, timing, machine.
     fields : mapping of str to Series
         By ``component.port.field``.
+    views : mapping of str to View
+        What pictures and ParaView show, by component: ``run.views["water"].at(0.2)``.
     """
 
     def __init__(self, folder: Path) -> None:
         self.folder = Path(folder).resolve()
         self.results = show.results(self.folder)
         self.fields = RecordedFields(self.folder)
+        self.views = Views(self.folder)
 
     @property
     def status(self) -> str:
@@ -158,6 +91,27 @@ class Run:
         with open(path, newline="") as file:
             rows = list(csv.DictReader(file))
         return {name: _columns(rows, name) for name in dict.fromkeys(row["name"] for row in rows)}
+
+    def to_pandas(self, *names: str) -> "pandas.DataFrame":
+        """Recorded fields as a table, with a row for the start and the end of each window.
+
+        Parameters
+        ----------
+        names : str
+            ``component``, ``component.port`` or ``component.port.field``. Without any, all fields
+            of at most 1000 numbers.
+
+        Returns
+        -------
+        pandas.DataFrame
+            By the time [s]; columns as ``water.gauges.pressure 3 [Pa]``: field, item if there are
+            several, axis, unit. Impulses are means over each window, nan at the start.
+        """
+        return columns.to_pandas(self.fields, names)
+
+    def to_xarray(self, *names: str) -> "xarray.Dataset":
+        """Recorded fields as arrays (time, item, axis) with units; `names` as of `to_pandas`."""
+        return columns.to_xarray(self.fields, names)
 
     def _require_same(self, name: str) -> None:
         """Refuse a file that was changed since the run has ended."""
@@ -199,9 +153,15 @@ def _columns(rows: list[dict[str, str]], name: str) -> dict[str, Series]:
         known = [(float(row["time"]), float(row[key])) for row in of_name if row[key]]
         if known:
             times, values = np.array(known).T
-            unit = "1" if "residual" in key else LEDGER_UNITS.get(key.partition("_")[0], "")
-            series[key] = Series(values, times, unit)
+            series[key] = Series(values, times, ledger_unit(key))
     return series
+
+
+def ledger_unit(column: str) -> str:
+    """Unit of a column of the ledger; "" of its names."""
+    if column == "time":
+        return "s"
+    return "1" if "residual" in column else LEDGER_UNITS.get(column.partition("_")[0], "")
 
 
 def finished(folder: Path, status: int) -> Run:

@@ -16,7 +16,7 @@ from started import write_scene
 from quintet.coupler.cli import main
 from quintet.coupler.report import html_report
 from quintet.coupler.report import report_figures as figures
-from quintet.coupler.report.run import Series
+from quintet.coupler.report.recorded import Series
 from quintet.coupler.report.run_tables import references
 from quintet.interfaces import libraries
 
