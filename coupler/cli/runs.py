@@ -211,8 +211,11 @@ def show(options: argparse.Namespace) -> int:
 def diff(options: argparse.Namespace) -> int:
     """Compare two runs bit by bit."""
     # Start-up: only this command needs it.
-    from quintet.coupler.report.diff import compare, sentence
+    from quintet.coupler.report.diff import compare, only_in_one, sentence
 
     difference = compare(*options.folders)
     print(sentence(difference))
+    for folder, names in zip(options.folders, only_in_one(*options.folders), strict=True):
+        if names and difference and difference.kind != "names":
+            print(f"Only {folder} has: {', '.join(names)}.")
     return 0 if difference is None else 1

@@ -5,8 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from quintet.coupler.cli import main
 from quintet.coupler.files.recording import Instant, Recorder
-from quintet.coupler.report.diff import compare, sentence
+from quintet.coupler.report.diff import compare, only_in_one, sentence
 from quintet.interfaces.ports import MOTION, SURFACE_LOAD
 
 ROWS = 150
@@ -24,7 +25,7 @@ def _record(
             random = np.random.default_rng(k)
             fields = {
                 "cubes": {f"motion.{f.name}": random.random((n, *f.shape)) for f in port.fields},
-                "water": {"surface_load.force": random.random((6, 3))},
+                "water": {"surface_load.force": np.random.default_rng(~k & 0xFFFF).random((6, 3))},
             }
             if change is not None:
                 change(k, fields)
@@ -77,11 +78,11 @@ def test_zero_and_minus_zero_differ_but_nan_is_itself(tmp_path):
 @pytest.mark.parametrize(
     ("settings", "kind", "word"),
     [
-        ({"names": ("cubes",)}, "names", "components cubes, water against components cubes"),
+        ({"names": ("cubes",)}, "names", "only the first has water.surface_load.force"),
         ({"n": 5}, "static", "cubes.motion.mass"),
         ({"mass": 2.0}, "static", "item 0: 1.0"),
         ({"rows": 149}, "windows", "150 rows against 149 rows"),
-        ({"port": replace(MOTION, fields=MOTION.fields[:2])}, "names", "fields"),
+        ({"port": replace(MOTION, fields=MOTION.fields[:2])}, "names", "motion.angular_velocity"),
         ({"port": replace(MOTION, items="partner")}, "ports", "partner"),
     ],
 )
@@ -107,3 +108,35 @@ def test_windows_at_different_times_differ(tmp_path, original):
     found = compare(original, b)
     assert found is not None and (found.kind, found.window) == ("time", 7)
     assert "at 0.07 s against 0.5 s" in sentence(found)
+
+
+def test_fields_that_both_have_are_compared_though_each_has_others(tmp_path, capsys):
+    """A value that differs is found; fields and components of one alone are named beside it."""
+
+    def change(k, fields):
+        if k == 7:
+            fields["cubes"]["motion.position"][2, 1] = 5.0
+
+    few = replace(MOTION, fields=MOTION.fields[:2])
+    a = _record(tmp_path / "a.h5", port=few)
+    same, changed = (
+        _record(tmp_path / name, edit, names=("cubes",))
+        for name, edit in (("b.h5", None), ("c.h5", change))
+    )
+    found = compare(a, changed)
+    assert found is not None and (found.kind, found.window) == ("value", 7)
+    assert compare(a, same).kind == "names" and compare(a, same).shared == 2
+    others = [f"cubes.motion.{field.name}" for field in MOTION.fields[2:]]
+    assert only_in_one(a, same) == (["water.surface_load.force"], sorted(others))
+    with pytest.raises(SystemExit) as ended:
+        main(["diff", str(a), str(changed)])
+    assert ended.value.code == 1
+    told = capsys.readouterr().out
+    assert "window 7" in told and f"Only {a} has: water.surface_load.force.\n" in told
+    assert f"Only {changed} has: {', '.join(sorted(others))}.\n" in told
+
+
+def test_recordings_without_a_field_in_common_are_not_the_same(tmp_path):
+    a, b = (_record(tmp_path / f"{name}.h5", names=(name,)) for name in ("cubes", "water"))
+    found = compare(a, b)
+    assert found is not None and "no field in common" in sentence(found)
