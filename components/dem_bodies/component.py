@@ -13,7 +13,7 @@ from quintet.components.dem_bodies.ports import SHOWS
 from quintet.components.dem_bodies.shapes.sampling import sample
 from quintet.components.dem_bodies.shapes.solid import solids
 from quintet.components.dem_bodies.start import described, masses
-from quintet.components.dem_bodies.view import planes_view, view
+from quintet.components.dem_bodies.view import Extents, planes_view, view
 from quintet.interfaces.component import (
     ONE_THREAD,
     Array,
@@ -52,6 +52,7 @@ class DemBodies(Component):
     def __init__(self, params: DemBodiesParams, resources: Resources = ONE_THREAD) -> None:
         self.params, (self.takes, self.gives) = params, self.ports_of(params)
         self.bodies, self.solids = params.placed, solids(params.placed)  # of the kinds of bodies
+        self.extents = Extents()  # where the bodies were when walls were asked for
         number = build.balls_first(self.bodies)
         model = build.model(params, self.bodies, number, self.solids)
         state, parts = build.state(self.bodies, number, self.solids), (self.bodies, self.solids)
@@ -191,9 +192,12 @@ class DemBodies(Component):
         return view(self.bodies, self.solids, state) if self.stepping.answers else {}
 
     def walls(self) -> Fields:
-        """Polygons on the planes, near the bodies."""
+        """Polygons on the planes, near all places where the bodies were when this was asked."""
         model, state = self.stepping.whole("motion")
-        return planes_view(model.plane, state) if self.stepping.answers else {}
+        if not self.stepping.answers:
+            return {}
+        self.extents.add(state)
+        return planes_view(model.plane, self.extents)
 
     def items(self) -> int:
         """Count the bodies."""

@@ -50,11 +50,24 @@ def mesh(file: str, scale: float) -> body_view.Outline:
     return body_view.Outline(points, np.zeros(len(points)), cells.reshape(-1, 3))
 
 
-def planes_view(planes: Numbers, state: State) -> Fields:
+class Extents:
+    """The box in which bodies have been seen so far: planes are shown around all of it."""
+
+    def __init__(self) -> None:
+        self.low, self.high = np.full(3, np.inf), np.full(3, -np.inf)  # m
+
+    def add(self, state: State) -> None:
+        """Take in where the bodies are now."""
+        where, radius = state.position[:-1], state.motion[:-1, 3, None]
+        self.low = np.minimum(self.low, (where - radius).min(axis=0))
+        self.high = np.maximum(self.high, (where + radius).max(axis=0))
+
+
+def planes_view(planes: Numbers, bodies: Extents) -> Fields:
     """Polygons on planes (p, 4): the part of each before the others, and near the bodies."""
     normals = planes[:, :3]
     points = normals * planes[:, 3:]
-    low, high, size = _near_bodies(points, normals, state)
+    low, high, size = _near_bodies(points, normals, bodies)
     # The box as six more planes, that look inwards.
     limits = np.concatenate([points, np.tile(low, (3, 1)), np.tile(high, (3, 1))])
     inwards = np.concatenate([normals, np.eye(3), -np.eye(3)])
@@ -71,10 +84,9 @@ def planes_view(planes: Numbers, state: State) -> Fields:
     return polygons(outlines)
 
 
-def _near_bodies(points: Array, normals: Array, state: State) -> tuple[Array, Array, float]:
+def _near_bodies(points: Array, normals: Array, bodies: Extents) -> tuple[Array, Array, float]:
     """Corners (3,) m of a box around bodies and their feet on planes; its size without rim [m]."""
-    where, radius = state.position[:-1], state.motion[:-1, 3]
-    low, high = (where - radius[:, None]).min(axis=0), (where + radius[:, None]).max(axis=0)
+    low, high = bodies.low, bodies.high
     centre = 0.5 * (low + high)
     feet = centre - normals * ((centre - points) * normals).sum(axis=1, keepdims=True)
     low, high = np.vstack([feet, low]).min(axis=0), np.vstack([feet, high]).max(axis=0)

@@ -23,6 +23,9 @@ SHOWS = (
     Field("schlieren", (), "1"),
     Field("shadowgraph", (), "1"),
     Field("spacing", (), "m"),  # of nodes
+    Field("exact_density", (), "kg/m3"),  # of a tube with a diaphragm
+    Field("exact_pressure", (), "Pa"),
+    Field("exact_velocity", (3,), "m/s"),
 )
 # Of all nodes, one row; sums of densities over their volumes.
 BALANCE = Port(

@@ -6,12 +6,13 @@ from quintet.components.meshless_gas.boundaries import NO_SLIP
 from quintet.components.meshless_gas.build import Domain, Rows, reaches
 from quintet.components.meshless_gas.clouds.cloud import Cloud
 from quintet.components.meshless_gas.diagnostics import mach, temperature
+from quintet.components.meshless_gas.exact_states import states_at
 from quintet.components.meshless_gas.params import MeshlessGasParams
 from quintet.components.meshless_gas.ranks.one import Ranks
 from quintet.components.meshless_gas.state import Fluxes, State
 from quintet.components.shared.geometry.box_faces import box
 from quintet.interfaces.component import Array, Fields
-from quintet.interfaces.faces import polygons
+from quintet.interfaces.faces import SYMMETRY, WALL, polygons
 
 DARKEST = 15.0  # exponent of the steepest gradient
 CONTRAST = 15.0  # of the greatest curvature: light that it bends is all gone, or twice as bright
@@ -104,7 +105,9 @@ def view(
             laplacian(domain, rows, slopes),
         )
     )
+    exact = _exact(params, points, state.time) if params.riemann else {}
     return {
+        **exact,
         "points": points,
         "spacing": spacing,
         "density": primitive[:, 0].copy(),
@@ -117,12 +120,25 @@ def view(
     }
 
 
+def _exact(params: MeshlessGasParams, points: Array, time: float) -> Fields:
+    """Exact solution at points (n, 3) m, to be drawn beside the computed one."""
+    exact = states_at(params, points, time)
+    return {
+        "exact_density": exact[:, 0].copy(),
+        "exact_pressure": exact[:, 4].copy(),
+        "exact_velocity": exact[:, 1:4].copy(),
+    }
+
+
 def walls(params: MeshlessGasParams) -> Fields:
-    """Faces of the box that are walls; of clouds round bodies none."""
+    """Faces of the box that are walls or planes of symmetry; of clouds round bodies none."""
     if params.box is None:
         return {}
-    faces = [name for name in params.boundaries if params.kind_of(name) in ("slip", *NO_SLIP)]
+    support = {"slip": WALL, "symmetry": SYMMETRY} | dict.fromkeys(NO_SLIP, WALL)
+    faces = [name for name in params.boundaries if params.kind_of(name) in support]
+    kinds = [support[params.kind_of(name)] for name in faces]
     low, high = list(params.box.lowest), list(params.box.highest)
     if params.planar:
         low[1], high[1] = -0.5, 0.5
-    return polygons(box(low, high, faces))
+    shown = polygons(box(low, high, faces))
+    return {**shown, "support": np.array(kinds)} if faces else {}

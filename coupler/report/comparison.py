@@ -14,9 +14,11 @@ import numpy as np
 from quintet.coupler.files.recording import Recording
 from quintet.coupler.measures.evaluation import Outcome, curve, reference_curve
 from quintet.coupler.measures.expectation import DISTANCES, Expectation
-from quintet.coupler.measures.oscillation import fit
+from quintet.coupler.measures.oscillation import fit as fit_oscillation
 from quintet.coupler.measures.time_series import Curve, between, mean
+from quintet.coupler.report.axes_units import fit
 from quintet.coupler.report.panels import curve_panels, save
+from quintet.coupler.report.profiles import Profile, draw_profiles
 from quintet.interfaces.component import Field, fields_of
 
 IN_UNIT = ("rms", "at", "max", "min", "mean")  # measures that have the unit of their curve
@@ -24,7 +26,9 @@ PANELS = 12  # at most
 COMPUTED, BAND = "tab:blue", "tab:orange"
 MARKS = (("o", "black"), ("s", "tab:red"), ("^", "tab:green"), ("D", "tab:purple"))
 AXES = "xyz"
+OWN_ITEMS = ("motion", "spheres", "points")  # ports of what a component consists of
 FINE = 1000  # points of a curve that is drawn by its formula
+TITLE = 68  # characters of a line above a panel
 LINE = 44  # characters of a line beside a panel or in its legend
 LINES = 2  # of a source in a legend
 Outcomes = Mapping[str, Outcome]
@@ -38,8 +42,9 @@ def comparison(
     out: Path,
     title: str = "",
     values: bool = False,
+    profiles: Sequence[Profile] = (),
 ) -> Path | None:
-    """Draw computed curves against their references, one panel for each curve.
+    """Draw profiles and computed curves against their references, one panel each.
 
     Parameters
     ----------
@@ -54,6 +59,8 @@ def comparison(
         Above all panels.
     values : bool
         Whether curves are drawn too whose only references are single values.
+    profiles : sequence of Profile
+        Of fields beside their exact solution.
 
     Returns
     -------
@@ -67,13 +74,15 @@ def comparison(
     wanted = sorted(
         curves.values(), key=lambda ones: all(expectation.csv is None for expectation in ones)
     )
-    if not wanted:
+    if not wanted and not profiles:
         return None
     if len(wanted) > PANELS:
         title = f"{title}\nthe first {PANELS} of {len(wanted)} curves"
         wanted = wanted[:PANELS]
     results = {outcome.name: outcome for outcome in outcomes}
-    figure, panels = curve_panels(len(wanted), title.strip())
+    figure, every = curve_panels(len(profiles) + len(wanted), title.strip())
+    of_profiles, panels = every[: len(profiles)], every[len(profiles) :]
+    draw_profiles(of_profiles, profiles)
     for panel, ones in zip(panels, wanted, strict=True):
         _draw(panel, ones, results, recording, Path(folder))
     return save(figure, out)
@@ -109,12 +118,13 @@ def _draw(
             )  # fmt: skip
         if expectation.level is not None:
             panel.axhline(expectation.level, color="grey", linewidth=0.8, linestyle="--")
-    panel.set_title(
-        "\n".join(_verdict(expectation, results.get(expectation.name)) for expectation in ones),
-        fontsize=9,
-    )
-    panel.set_xlabel(_time(ones[0]))
-    panel.set_ylabel(textwrap.fill(_label(ones, recording), LINE), fontsize=9)
+    verdicts = (_verdict(expectation, results.get(expectation.name)) for expectation in ones)
+    lines = (textwrap.fill(verdict, TITLE, subsequent_indent="  ") for verdict in verdicts)
+    panel.set_title("\n".join(lines), fontsize=9)
+    fit(panel.xaxis, _time(ones[0]), "s", max(map(abs, panel.get_xlim())))
+    name, unit = _label(ones, recording)
+    fit(panel.yaxis, textwrap.fill(name, LINE), unit, max(map(abs, panel.get_ylim())))
+    panel.yaxis.label.set_fontsize(9)
     panel.grid(alpha=0.3)
     below = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.14), "ncols": 2}  # hides no curve
     panel.legend(fontsize=8, frameon=False, **below)
@@ -142,7 +152,7 @@ def _draw_oscillation(panel: Any, ones: list[Expectation], computed: Curve) -> N
         return
     first = next(iter(expected.values()))
     part = between(computed, first.begin, math.inf if first.end is None else first.end)
-    wave = fit(part)
+    wave = fit_oscillation(part)
     known = {key: value for key, value in ((k, e.value) for k, e in expected.items()) if value}
     if not math.isfinite(wave.period) or not known:
         return
@@ -189,13 +199,13 @@ def shortened(text: str) -> str:
 def _time(expectation: Expectation) -> str:
     """Name of the times, and what they count from."""
     return (
-        "t [s]"
+        "t"
         if expectation.from_level is None
-        else f"t since {_number(expectation.from_level)} is passed [s]"
+        else f"t since {_number(expectation.from_level)} is passed"
     )
 
 
-def _label(ones: list[Expectation], recording: Recording) -> str:
+def _label(ones: list[Expectation], recording: Recording) -> tuple[str, str]:
     """Name and unit of the curve that some expectations measure."""
     expectation = ones[0]
     field, units = (
@@ -203,13 +213,8 @@ def _label(ones: list[Expectation], recording: Recording) -> str:
         {expectation.unit for expectation in ones if expectation.measure in IN_UNIT},
     )
     if quantity := next((other.quantity for other in ones if other.quantity), ""):
-        return f"{quantity} [{units.pop() if len(units) == 1 else field.unit}]"
-    port, _, what = expectation.field.replace("_", " ").partition(".")
-    name = f"{expectation.component}: {what if port == 'motion' else f'{port} {what}'}"
-    if expectation.axis is not None:
-        name += f" {AXES[expectation.axis]}" if field.shape == (3,) else f" {expectation.axis}"
-    elif field.shape:
-        name = f"|{name}|"
+        return quantity, units.pop() if len(units) == 1 else field.unit
+    name = _plain_name(expectation, field)
     items = recording.items(expectation.component, expectation.field)[0]
     if expectation.item in ("mean", "max", "min"):
         name += f", {expectation.item} of {items} items"
@@ -221,10 +226,25 @@ def _label(ones: list[Expectation], recording: Recording) -> str:
         change = "plus" if expectation.offset > 0.0 else "less"
         name = f"{name}, {change} {abs(expectation.offset):g} {field.unit}"
     if abs(expectation.scale) == 1.0:
-        return f"{'−' if expectation.scale < 0.0 else ''}{name} [{field.unit}]"
+        return f"{'−' if expectation.scale < 0.0 else ''}{name}", field.unit
     if len(units) == 1:
-        return f"{_number(expectation.scale)} × ({name}) [{units.pop()}]"
-    return f"{_number(expectation.scale)} × ({name} [{field.unit}])"
+        return f"{_number(expectation.scale)} × ({name})", units.pop()
+    return f"{_number(expectation.scale)} × ({name} in {field.unit})", "1"
+
+
+def _plain_name(expectation: Expectation, field: Field) -> str:
+    """A field in words, with its axis and its component, and with the port that is not all of it.
+
+    A port says where or of what a field is, unless it holds the items of a component.
+    """
+    port, _, what = expectation.field.replace("_", " ").partition(".")
+    if expectation.axis is not None:
+        what += f" {AXES[expectation.axis]}" if field.shape == (3,) else f" {expectation.axis}"
+    elif field.shape:
+        what = f"|{what}|"
+    last = port.split()[-1]
+    at = "" if port in OWN_ITEMS else f" at {last}" if last.startswith("gauge") else f", {port}"
+    return f"{what}{at} of {expectation.component}"
 
 
 def _number(value: float) -> str:

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from quintet.coupler.report.axes_units import fit, with_unit
 from quintet.coupler.report.cut import cut_and_sorted, depth_of_bodies
 from quintet.coupler.report.panels import place_panels, save
 from quintet.coupler.report.view_drawing import (
@@ -103,11 +104,12 @@ def draw_run(run: Path, out: Path, picture: Picture, title: str = "") -> Path:
     figure, panels = place_panels(len(views), stretch * tall / wide, text)
     scales = colour_scales(views, picture.ranges)
     sizes = diameters(views[0])
-    across, upwards = viewpoint.labels
+    extent = float((high - low).max())
     for panel, time, view in zip(panels, instants, views, strict=True):
         panel.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect=stretch)
-        panel.set(xlabel=across, ylabel=upwards)
-        panel.set_title(f"t = {time:.4g} s", fontsize=10)
+        for axis, name in zip((panel.xaxis, panel.yaxis), viewpoint.names, strict=True):
+            fit(axis, name, "m", extent)
+        panel.set_title(f"t = {with_unit(time, 's')}", fontsize=10)
         panel.locator_params(axis="x", nbins=_ticks(figure, panel))
         draw_walls(panel, still)
         draw_view(panel, view, scales, sizes)
@@ -175,7 +177,7 @@ def _said(picture: Picture, cut: Cut, stretch: float) -> str:
     if picture.displacement_scale != 1.0:
         remarks.append(f"displacements drawn {picture.displacement_scale:g} times as large")
     if stretch > 1.0:
-        upwards, across = viewpoint.labels[1][0], viewpoint.labels[0][0]
+        across, upwards = viewpoint.names
         remarks.append(f"{upwards} drawn {stretch:.2g} times as long as {across}")
     return ", ".join(remarks)
 

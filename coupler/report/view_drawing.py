@@ -278,7 +278,7 @@ def add_legend(figure: Any, view: Sequence[Shown], still: Sequence[Still]) -> No
         handles.append(Patch(facecolor="none", edgecolor=WALL, hatch="////", label="clamped"))
     edge_on = [wall for wall in still if _is_flat(wall.corners[:, [0, 2]])]
     if any(wall.support == SYMMETRY for wall in edge_on):
-        label = "held across it (symmetry)"
+        label = "plane of symmetry"
         handles.append(Line2D([], [], color=WALL, linewidth=1.5, linestyle="dashdot", label=label))
     if not handles:
         return

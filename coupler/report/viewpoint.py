@@ -36,9 +36,9 @@ class Viewpoint:
         return "xyz"[self.depth]
 
     @property
-    def labels(self) -> tuple[str, str]:
+    def names(self) -> tuple[str, str]:
         """Of the horizontal and of the vertical axis of a panel."""
-        return f"{'xyz'[self.right]} [m]", f"{'xyz'[self.up]} [m]"
+        return "xyz"[self.right], "xyz"[self.up]
 
     def turned(self, points: Array) -> Array:
         """Turn points (..., 3) m of the scene: to the right, into the picture, up."""

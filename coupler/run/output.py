@@ -215,10 +215,12 @@ class OutputWriter:
         """Ask every component for its totals, and for what there is to see of it."""
         totals = {}
         for name, component in coupling.components.items():
-            first = self._shows and name not in self._asked
-            answer = component.call("view", shown=self._shows, walls=first)
+            # Again for pictures: planes without edges are shown where the bodies have come to.
+            drawn = self._meets_picture(self._windows.now)
+            walls = self._shows and (name not in self._asked or drawn)
+            answer = component.call("view", shown=self._shows, walls=walls)
             totals[name] = answer.header["totals"]
-            if first:
+            if walls:
                 self._asked.add(name)
                 self._write_walls(name, answer.fields)
             shown = {k: v for k, v in answer.fields.items() if not k.startswith(WALLS)}

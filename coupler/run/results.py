@@ -23,6 +23,7 @@ from quintet.coupler.measures.expectation import ROUNDING, Expectation
 from quintet.coupler.report.comparison import comparison
 from quintet.coupler.report.panels import can_draw
 from quintet.coupler.report.picture import Picture, draw_run
+from quintet.coupler.report.profiles import profiles_of
 from quintet.coupler.report.view_steps import view_files
 from quintet.coupler.scene.overrides import run_arguments
 from quintet.coupler.scene.planned_times import cores_here, serial_of
@@ -139,8 +140,11 @@ def draw(scene: Scene, folder: Path, outcomes: list[Outcome]) -> None:
             draw_run(folder, out, picture_of(output, output.pictures), title)
     if outcomes:
         out, values = folder / PICTURES[1], bool(output.pictures)
+        profiles = profiles_of(folder)
         with Recording(folder / "recording.h5") as recording, reporting_disk(out):
-            comparison(scene.folder, scene.expect, outcomes, recording, out, title, values)
+            comparison(
+                scene.folder, scene.expect, outcomes, recording, out, title, values, profiles
+            )
 
 
 def timing(

@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ from dem_scenes import FLOOR, NOTHING, box, build, energy, material, run, sphere
 from scipy.integrate import solve_ivp
 
 from quintet.components.dem_bodies.shapes.sphere_union import measure_union
+from quintet.components.dem_bodies.view import Extents, planes_view
 from quintet.interfaces.component import outputs_of
 from quintet.interfaces.errors import StepError
 
@@ -231,6 +233,18 @@ def test_planes_are_shown_where_they_hold_bodies():
     assert np.allclose(left[:, 0], -0.1) and np.allclose(right[:, 0], 0.2)
     assert left[:, 2].min() == pytest.approx(0.0, abs=1e-9) and not np.abs(floor[:, 2]).any()
     assert build([sphere([0.0, 0.0, 1.0])]).walls() == {}
+
+
+def test_planes_are_shown_where_bodies_were_and_where_they_have_come_to():
+    """A sphere that flew 50 m along a floor is still above it, and so is its start."""
+    extents, floor = Extents(), np.array([[0.0, 0.0, 1.0, 0.0]])
+    reached = []
+    for x in (0.0, 50.0):
+        position = np.array([[x, 0.0, 1.0], [np.nan] * 3])  # the last row is no body
+        extents.add(SimpleNamespace(position=position, motion=np.full((2, 4), 0.5)))
+        reached.append(planes_view(floor, extents)["points"][:, 0])
+    assert reached[0].max() < 50.0 < reached[1].max()
+    assert reached[1].min() <= reached[0].min() < 0.0
 
 
 def test_steps_are_long_while_nothing_can_touch():

@@ -11,6 +11,7 @@ from quintet.components.meshless_gas.exact.riemann import Side, star
 from quintet.components.meshless_gas.view import laplacian
 from quintet.interfaces.component import Resources
 from quintet.interfaces.errors import StepError
+from quintet.interfaces.faces import SYMMETRY, WALL
 
 # Left, right, pressure and velocity between the waves: Toro (2009), table 4.2, and other tubes.
 TUBES = {
@@ -91,6 +92,29 @@ def test_nothing_is_gained_nor_lost_before_the_first_step():
     made = tube(31, *SOD)
     drifts = [given(made, f"balance.{one}_drift") for one in ("mass", "momentum", "energy")]
     assert all((one == 0.0).all() for one in drifts)  # summed in one order, now and at the start
+
+
+def test_a_tube_shows_the_exact_solution_beside_its_own():
+    made = run(tube(50, *SOD), 0.1)
+    shown = made.view()
+    place = shown["points"][:, 0]
+    behind = (place > 0.6) & (place < 0.66)  # between contact and shock: Toro, table 4.3
+    assert shown["exact_density"][behind] == pytest.approx(0.26557, rel=1e-4)
+    assert shown["exact_pressure"][behind] == pytest.approx(0.30313, rel=1e-4)
+    assert shown["exact_velocity"][behind, 0] == pytest.approx(0.92745, rel=1e-4)
+    assert np.abs(shown["density"] - shown["exact_density"]).mean() < 0.0145
+
+
+def test_planes_of_symmetry_of_a_box_are_shown_as_such_and_walls_as_walls():
+    boundaries = {"z-": {"kind": "symmetry"}, "z+": {"kind": "slip"}}
+    made = gas(
+        box={"lowest": [0.0, 0.0, 0.0], "highest": [1.0, 0.0, 0.5], "spacing": 0.1},
+        initial=state(1.0, 0.0, 1.0),
+        boundaries=boundaries,
+    )
+    shown = made.walls()
+    heights = [float(shown["points"][cell][:, 2].max()) for cell in shown["cells"]]
+    assert dict(zip(shown["support"].tolist(), heights, strict=True)) == {SYMMETRY: 0.0, WALL: 0.5}
 
 
 def test_a_picture_after_load_is_that_before_save():

@@ -186,7 +186,7 @@ def test_clamped_faces_have_strokes_behind_them_and_planes_of_symmetry_are_dashe
     outwards = 1.0 if end[:, 0].max() > 1.55 else -1.0
     assert ((strokes[:, 0] - end[0, 0]) * outwards >= -1e-12).all()
     told = [text.get_text() for text in drawn.legends[0].get_texts()]
-    assert {"clamped", "held across it (symmetry)"} <= set(told) and "walls" not in told
+    assert {"clamped", "plane of symmetry"} <= set(told) and "walls" not in told
 
 
 def test_a_long_tank_is_no_strip(tmp_path, figure):

@@ -92,16 +92,16 @@ def test_a_box_hides_nothing_of_particles_in_one_plane(tmp_path):
 
 
 @pytest.mark.parametrize(
-    "view, labels, right, into",
+    "view, names, right, into",
     [
-        ("side", ("x [m]", "z [m]"), [1, 0, 0], [0, 1, 0]),
-        ("front", ("y [m]", "z [m]"), [0, 1, 0], [-1, 0, 0]),
-        ("top", ("x [m]", "y [m]"), [1, 0, 0], [0, 0, -1]),
+        ("side", ("x", "z"), [1, 0, 0], [0, 1, 0]),
+        ("front", ("y", "z"), [0, 1, 0], [-1, 0, 0]),
+        ("top", ("x", "y"), [1, 0, 0], [0, 0, -1]),
     ],
 )
-def test_views_are_not_mirrored(view, labels, right, into):
+def test_views_are_not_mirrored(view, names, right, into):
     viewpoint = VIEWPOINTS[view]
-    assert viewpoint.labels == labels
+    assert viewpoint.names == names
     assert viewpoint.turned(np.array(right, float)).tolist() == [1.0, 0.0, 0.0]
     assert viewpoint.turned(np.array(into, float)).tolist() == [0.0, 1.0, 0.0]
     turn = viewpoint.turned(np.eye(3))
