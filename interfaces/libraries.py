@@ -13,6 +13,7 @@ EXTRAS = {
     "xarray": "tables",
     "pyvista": "views3d",
     "imageio": "views3d",
+    "imageio_ffmpeg": "views3d",
 }  # by the name that is imported
 
 

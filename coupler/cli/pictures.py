@@ -7,8 +7,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from quintet.coupler.cli.options import BAD, Command
+from quintet.interfaces.errors import SceneError
 
 if TYPE_CHECKING:
+    from quintet.coupler.report.redraw import Wanted
     from quintet.coupler.report.viewpoint import Box
 
 TIMES = "s, one panel each: 0.1,0.2 (default: those of the scene, else the last)"
@@ -25,6 +27,8 @@ SERIES = (
     "draw recorded fields over time instead: NAME, NAME.PORT or NAME.PORT.FIELD (default: all of "
     "at most 1000 numbers)"
 )
+IN_SPACE = "draw the whole run in three dimensions (extra views3d; default: DIR/drawn-3d.png)"
+ANIMATE = "make a film of all steps in three dimensions: .gif or .mp4 (extra views3d)"
 FIELDS = "NAME, NAME.PORT or NAME.PORT.FIELD (default: all of at most 1000 numbers)"
 FOLDER = "folder of the files (default: DIR/export)"
 
@@ -39,10 +43,12 @@ def add_commands(command: Command) -> None:
     drawing.add_argument(
         "--range", action="append", default=[], type=_range, metavar="NAME=LOW,HIGH", help=RANGE
     )
-    drawing.add_argument("--view", choices=("side", "front", "top"), default="side", help=VIEW)
+    drawing.add_argument("--view", choices=("side", "front", "top"), default="", help=VIEW)
     drawing.add_argument("--section", type=_number, metavar="M", help=SECTION)
     drawing.add_argument("--region", type=_number, nargs=6, metavar="M", help=REGION)
     drawing.add_argument("--displacement-scale", type=_above_zero, metavar="N", help=SCALE)
+    drawing.add_argument("--3d", action="store_true", dest="in_space", help=IN_SPACE)
+    drawing.add_argument("--animate", type=Path, metavar="FILE", help=ANIMATE)
     drawing.add_argument("--series", nargs="*", metavar="FIELD", help=SERIES)
     drawing.add_argument("--out", type=Path, metavar="FILE", help=OUT)
     drawing.add_argument("--force", action="store_true", help=REPLACE)
@@ -93,7 +99,7 @@ def draw(options: argparse.Namespace) -> int:
     """Draw a run again."""
     # Start-up: only this command needs it.
     from quintet.coupler.report.panels import can_draw
-    from quintet.coupler.report.redraw import Wanted, redraw
+    from quintet.coupler.report.redraw import Wanted
 
     if not can_draw():
         return BAD
@@ -108,9 +114,27 @@ def draw(options: argparse.Namespace) -> int:
         _box(options.region),
         options.displacement_scale,
     )
-    out = redraw(options.folder, wanted, options.out, options.force)
+    out = _redraw(options, wanted)
     print(f"drawn: {os.path.relpath(out)}")
     return 0
+
+
+def _redraw(options: argparse.Namespace, wanted: "Wanted") -> Path:
+    """Draw in two or in three dimensions."""
+    # Start-up: only this command needs it.
+    from quintet.coupler.report.redraw import redraw, redraw_3d
+    from quintet.coupler.report.views3d import MOVIES
+
+    folder, film, force = options.folder, options.animate, options.force
+    if film is None:
+        draws = redraw_3d if options.in_space else redraw
+        return draws(folder, wanted, options.out, force)
+    if options.out is not None or film.suffix.lower() not in MOVIES:
+        raise SceneError(
+            f"--animate {film}: it must end with .gif or .mp4, and stand without --out. Name one "
+            "file."
+        )
+    return redraw_3d(folder, wanted, film, force)
 
 
 def _draw_series(options: argparse.Namespace) -> int:

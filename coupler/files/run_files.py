@@ -17,10 +17,10 @@ FAILED_ORDERS = "failed-orders.msg"  # last orders of windows, of a run that fai
 RUN_LOG = "run.log"  # what a run printed that a study started
 PICTURES = ("scene.png", "comparison.png")
 # by quintet draw and report, where not elsewhere
-DRAWN, SERIES_DRAWN, REPORT = "drawn.png", "series.png", "report.html"
+DRAWN, DRAWN_3D, SERIES_DRAWN, REPORT = "drawn.png", "drawn-3d.png", "series.png", "report.html"
 RUN_FILES = (  # of every run
-    RESULTS, RECORDING, LEDGER, SCENE, *PICTURES, DRAWN, SERIES_DRAWN, REPORT, FAILED_ORDERS,
-    RESERVE,
+    RESULTS, RECORDING, LEDGER, SCENE, *PICTURES, DRAWN, DRAWN_3D, SERIES_DRAWN, REPORT,
+    FAILED_ORDERS, RESERVE,
 )  # fmt: skip
 SNAPSHOTS = "snapshot-*.h5"
 VIEWS, WALLS, FAILURE = ".vtkhdf", ".walls.vtkhdf", ".failure.vtkhdf"

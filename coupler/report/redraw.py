@@ -6,12 +6,12 @@ from pathlib import Path
 from typing import Any
 
 from quintet.coupler.files import vtkhdf_reader
-from quintet.coupler.files.run_files import DRAWN, RESULTS, SCENE
+from quintet.coupler.files.run_files import DRAWN, DRAWN_3D, RESULTS, SCENE
 from quintet.coupler.report.free_place import free_place
 from quintet.coupler.report.picture import Picture, draw_run
 from quintet.coupler.report.show import results
 from quintet.coupler.report.view_steps import view_files
-from quintet.coupler.report.viewpoint import VIEWPOINTS, Box
+from quintet.coupler.report.viewpoint import SIDE, VIEWPOINTS, Box
 from quintet.coupler.scene.read import parse
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.params import unknown
@@ -31,7 +31,7 @@ class Wanted:
     ranges : mapping of str to two numbers
         Ends of the colours of a component, by its name.
     view : str
-        One of side, front and top.
+        One of side, front and top; "": side, or obliquely from above in three dimensions.
     section : float, m
     region : two corners, m
     displacement_scale : float
@@ -40,7 +40,7 @@ class Wanted:
     times: Sequence[float] = ()
     colours: Sequence[str] = ()
     ranges: Mapping[str, tuple[float, float]] = field(default_factory=dict)
-    view: str = "side"
+    view: str = ""
     section: float | None = None
     region: Box | None = None
     displacement_scale: float | None = None
@@ -59,15 +59,41 @@ def redraw(folder: Path, wanted: Wanted, out: Path | None = None, force: bool = 
     force : bool
         Replace another file.
     """
-    files = view_files(folder) if folder.is_dir() else []
-    if not files:
-        raise SceneError(
-            f"run {folder}: it has no view with steps to draw. Name the folder of a run whose "
-            "scene has output.interval or output.pictures."
-        )
-    chosen = _picture(files, _output_of(folder), wanted)
+    chosen = _picture(_files(folder), _output_of(folder), wanted)
     place = free_place(folder / DRAWN, out, FORMATS, force)
     return draw_run(folder, place, chosen, title_of(folder))
+
+
+def _files(folder: Path) -> list[Path]:
+    """View files of a run."""
+    if files := view_files(folder) if folder.is_dir() else []:
+        return files
+    raise SceneError(
+        f"run {folder}: it has no view with steps to draw. Name the folder of a run whose "
+        "scene has output.interval or output.pictures."
+    )
+
+
+def redraw_3d(folder: Path, wanted: Wanted, out: Path | None = None, force: bool = False) -> Path:
+    """Draw a run in three dimensions, as `redraw` does; of a film `out` is given.
+
+    Without times a film has all steps of the run.
+    """
+    # Start-up: only these pictures need it.
+    from quintet.coupler.report.views3d import MOVIES, STILLS, animate, draw_3d
+
+    if wanted.section is not None or wanted.region is not None:
+        raise SceneError(
+            "a view in three dimensions shows the whole run; --section and --region are for "
+            "pictures in two. Remove them."
+        )
+    chosen = _picture(_files(folder), _output_of(folder), wanted)
+    title = title_of(folder)
+    if out is not None and out.suffix.lower() in MOVIES:
+        place = free_place(folder / DRAWN_3D, out, MOVIES, force)
+        return animate(folder, place, chosen, wanted.view, title, every=not wanted.times)
+    place = free_place(folder / DRAWN_3D, out, STILLS, force)
+    return draw_3d(folder, place, chosen, wanted.view, title)
 
 
 def _output_of(folder: Path) -> Mapping[str, Any]:
@@ -96,8 +122,8 @@ def _picture(files: Sequence[Path], output: Mapping[str, Any], wanted: Wanted) -
     asked = {colour.partition(".")[0] for colour in wanted.colours}
     kept_from_scene = [c for c in output.get("colours", ()) if c.partition(".")[0] not in asked]
     scale = wanted.displacement_scale or float(output.get("displacement_scale", 1.0))
-    viewpoint = VIEWPOINTS[wanted.view]
-    from_scene = output.get("region") if wanted.view == "side" and wanted.section is None else None
+    viewpoint = VIEWPOINTS[wanted.view or "side"]
+    from_scene = output.get("region") if viewpoint is SIDE and wanted.section is None else None
     return Picture(
         times=wanted.times or due or [last],
         colours=[*kept_from_scene, *wanted.colours],
