@@ -1,8 +1,9 @@
-"""Commands that draw, describe and hand on what runs left: draw, report, export."""
+"""Commands that draw, describe and hand on what runs left: draw, report, export, trace."""
 
 import argparse
 import math
 import os
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -22,6 +23,7 @@ REGION = "m, corners of the box that is shown: X Y Z X Y Z (default: that of the
 SCALE = "draw displacements so many times as large"
 OUT = "the picture: .png, .svg, .pdf or .jpg (default: DIR/drawn.png)"
 PAGE = "the page, one .html file (default: DIR/report.html)"
+TIMELINE = "the trace, one .json file (default: DIR/trace.json)"
 REPLACE = "replace the file of --out"
 SERIES = (
     "draw recorded fields over time instead: NAME, NAME.PORT or NAME.PORT.FIELD (default: all of "
@@ -66,6 +68,12 @@ def add_commands(command: Command) -> None:
     exporting.add_argument("--out", type=Path, metavar="FOLDER", help=FOLDER)
     exporting.add_argument("--force", action="store_true", help="replace files of the same names")
 
+    text = "write when each component computed and waited as Chrome trace JSON, for ui.perfetto.dev"
+    tracing = command("trace", trace, text)
+    tracing.add_argument("folder", type=Path, metavar="DIR", help="folder of a run with --trace")
+    tracing.add_argument("--out", type=Path, metavar="FILE", help=TIMELINE)
+    tracing.add_argument("--force", action="store_true", help=REPLACE)
+
 
 def export(options: argparse.Namespace) -> int:
     """Write a run as CSV."""
@@ -77,6 +85,21 @@ def export(options: argparse.Namespace) -> int:
         print(f"written: {os.path.relpath(path)}")
     for key in exported.left_out:
         print(f"left out, for a row has more than 1000 numbers: {key}; name it to export it")
+    return 0
+
+
+def trace(options: argparse.Namespace) -> int:
+    """Write the trace of a run."""
+    # Start-up: only this command needs it.
+    from quintet.coupler.files.run_files import CHROME_TRACE
+    from quintet.coupler.report.chrome_trace import cut_short, write_chrome_trace
+    from quintet.coupler.report.free_place import free_place
+
+    place = free_place(options.folder / CHROME_TRACE, options.out, [".json"], options.force)
+    out, is_whole = write_chrome_trace(options.folder, place)
+    if not is_whole:
+        print(f"quintet: {cut_short(options.folder)}", file=sys.stderr)
+    print(f"written: {os.path.relpath(out)}; open it in https://ui.perfetto.dev")
     return 0
 
 

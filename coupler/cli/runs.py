@@ -38,6 +38,7 @@ CHAOS = (
 ERROR_BAR = (
     "estimate the error that the coupling makes in the watched quantities: --set error_bar.on=true"
 )
+TRACE = "write when each component computed and waited, for quintet trace (sets output.trace)"
 COMPILED = "scenes, or kinds, which stand for all scenes that use them (default: all scenes)"
 
 
@@ -52,6 +53,7 @@ def add_commands(command: Command) -> None:
     running.add_argument("--grace", type=seconds, default=0.0, metavar="SECONDS", help=GRACE)
     running.add_argument("--error-bar", action="store_true", help=ERROR_BAR)
     running.add_argument("--chaos", type=seed, metavar="SEED", help=CHAOS)
+    running.add_argument("--trace", action="store_true", help=TRACE)
     running.add_argument("--inside-mpi", action="store_true", help=argparse.SUPPRESS)
     joining = command("join", join, "start one component here and join it to a coupler elsewhere")
     add_scene(joining)
@@ -76,6 +78,8 @@ def add_commands(command: Command) -> None:
 def run(options: argparse.Namespace) -> int:
     """Run a scene, from the start or from a snapshot."""
     outlive_readers()
+    if options.trace:
+        _ask_for_trace(options)
     scene, out, snapshot = _resumed(options) if options.resume else _begun(options)
     scene.elsewhere, scene.grace = set(options.elsewhere), options.grace
     scene.chaos = options.chaos
@@ -99,6 +103,16 @@ def run(options: argparse.Namespace) -> int:
     if rank:
         _leave_job(folder, status)
     return status
+
+
+def _ask_for_trace(options: argparse.Namespace) -> None:
+    """Set the key of the scene that asks for a trace."""
+    if options.resume:
+        raise SceneError(
+            "--trace is for the start of a run: --resume goes on with the trace that the run has, "
+            "or without. Remove --trace."
+        )
+    options.settings = [*options.settings, "output.trace=true"]
 
 
 def _leave_job(folder: Path, status: int) -> None:

@@ -107,7 +107,7 @@ class Participant:
         self.notes: list[str] = []  # what the user should read of it
         self.shapes: Shapes | None = None  # of its outputs, once known
         self.sums: AnswerSums | None = None  # of which its answers tell, once its ports are joined
-        self._asked = 0.0
+        self.asked = time.perf_counter()  # s, when it got its last order, or was made
         self._answered = True  # whether the answer to the last order is known
         self._kept: dict[int, tuple[int, float]] = {}  # window and stable step, by depth
         self.trial = False  # whether its windows are a trial, undone afterwards
@@ -115,7 +115,7 @@ class Participant:
 
     def send_order(self, order: str, fields: Fields | None = None, **header: Any) -> None:
         """Send an order."""
-        self._asked = time.perf_counter()
+        self.asked = time.perf_counter()
         self.order, self._answered = order, False
         if self.trial:
             header["trial"] = True
@@ -234,7 +234,7 @@ class Participant:
     def finish(self) -> Message:
         """Wait for the end of the window that was ordered."""
         message = self.receive(self.shapes)
-        took = time.perf_counter() - self._asked
+        took = time.perf_counter() - self.asked
         timing, header = self.timing, message.header
         self.stable = float(header["stable"])
         self.window += 1

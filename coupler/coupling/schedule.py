@@ -123,6 +123,7 @@ class Coupling:
     relaxed: dict[tuple[int, str], Array] = field(default_factory=dict)  # last instants handed on
     late: set[int] = field(default_factory=set)  # transfers whose impulses wait for the next window
     last_dt: float = 0.0  # s, the last window
+    on_mapping: Callable[[float, float], None] | None = None  # called with begin and end [s]
     transfers: dict[int, tuple[str, str]] = field(init=False)  # by number: members, giver and taker
     equal: set[str] = field(init=False)  # components that must make equal steps
     acceleration: Acceleration = field(init=False)
@@ -266,7 +267,10 @@ class Coupling:
         """Count the time that goes into transfers and bookkeeping."""
         began = time.perf_counter()
         yield
-        self.costs.mapping += time.perf_counter() - began
+        ended = time.perf_counter()
+        self.costs.mapping += ended - began
+        if self.on_mapping:
+            self.on_mapping(began, ended)
 
     def save(self) -> dict[str, Any]:
         """What outlives a window, for a snapshot and for a group that is repeated."""

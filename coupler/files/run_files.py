@@ -18,9 +18,10 @@ RUN_LOG = "run.log"  # what a run printed that a study started
 PICTURES = ("scene.png", "comparison.png")
 # by quintet draw and report, where not elsewhere
 DRAWN, DRAWN_3D, SERIES_DRAWN, REPORT = "drawn.png", "drawn-3d.png", "series.png", "report.html"
+TRACE, CHROME_TRACE = "trace.csv", "trace.json"  # of a run with output.trace; by quintet trace
 RUN_FILES = (  # of every run
     RESULTS, RECORDING, LEDGER, SCENE, *PICTURES, DRAWN, DRAWN_3D, SERIES_DRAWN, REPORT,
-    FAILED_ORDERS, RESERVE,
+    TRACE, CHROME_TRACE, FAILED_ORDERS, RESERVE,
 )  # fmt: skip
 SNAPSHOTS = "snapshot-*.h5"
 VIEWS, WALLS, FAILURE = ".vtkhdf", ".walls.vtkhdf", ".failure.vtkhdf"

@@ -68,6 +68,8 @@ class OutputWriter:
         self._judgement = judgement
         self.on_begin: Callable[[], None] = lambda: None  # called when the first window is next
         self.on_window: Callable[[int, float], None] = lambda *_: None  # windows done, time [s]
+        # Called when all of a window is written, and before the first.
+        self.after_window: Callable[[Coupling], None] = lambda _: None
         self.done, self.time = first or 0, 0.0  # windows, s
         self._kept = time.monotonic()  # when the last snapshot was made
         self._cost = 0.0  # s that it took
@@ -110,6 +112,7 @@ class OutputWriter:
             self._record(coupling)
             self._note(coupling)
         self._progress = ProgressReport(self.scene.file.end)
+        self.after_window(coupling)
 
     def _recording(self, coupling: Coupling, described: Mapping[str, Fields]) -> Recorder:
         path = self.folder / NAME
@@ -161,6 +164,7 @@ class OutputWriter:
         elif self._restart_points:
             self._restart_points.end_window(coupling)
         self._now = now
+        self.after_window(coupling)
 
     def _reading(self, coupling: Coupling) -> Reading:
         compute = {

@@ -25,7 +25,7 @@ from quintet.coupler.files.disk import (
 )
 from quintet.coupler.files.reached import NAME as REACHED
 from quintet.coupler.files.reached import Reached
-from quintet.coupler.files.run_files import LEDGER, RESULTS, SCENE, failure_files
+from quintet.coupler.files.run_files import LEDGER, RESULTS, SCENE, TRACE, failure_files
 from quintet.coupler.launch.companion import Companion, once_gone
 from quintet.coupler.launch.connect import Connection, connect
 from quintet.coupler.launch.disturbance import UNDISTURBED, Disturbance
@@ -114,6 +114,9 @@ class ActiveRun:
             scene, folder, stop, self.logs, self.judgement, first, view_checks
         )
         self.files: tuple[Closable, ...] = (self.writer, self.ledger, *self.logs.values())
+        self.attach_trace: Callable[[Coupling], None] = lambda _: None
+        if scene.file.output.trace:
+            self._begin_trace()
         self.costs = Costs()
         self.outcome: dict[str, Any] = {"status": "failed", "windows": 0, "time": 0.0}
         self.participants: dict[str, Participant] = {}
@@ -147,6 +150,7 @@ class ActiveRun:
         self._coupling = coupling = assemble(
             scene.coupling, self.participants, self.exchange, self.ledger, self.logs, self.costs
         )
+        self.attach_trace(coupling)
         path = self.snapshot
         restore = partial(snapshots.restore, judgement=self.judgement, path=path) if path else None
         asked = scene.asked_outputs()
@@ -158,6 +162,15 @@ class ActiveRun:
         connection.close(True)
         self._connection = None
         self.outcome |= outcome_of(end)
+
+    def _begin_trace(self) -> None:
+        """Have the times of orders, mappings and windows written down."""
+        # Only runs that ask for a trace load it.
+        from quintet.coupler.run.trace_log import TraceLog
+
+        log = TraceLog(self.folder / TRACE, self.scene.transport, bool(self.snapshot))
+        self.attach_trace, self.writer.after_window = log.attach, log.after_window
+        self.files = (*self.files, log)
 
     def _warn_of_limits(self) -> None:
         """Warn of predicted limits that the scene runs beyond."""

@@ -98,6 +98,9 @@ class OutputSettings:
     watch
         ``"component.port.field"``: recorded too, and their coupling error is estimated beside that
         of the expectations where `error_bar.on` is set.
+    trace
+        Whether a table of when each component was ordered to do what, and answered, is written, for
+        ``quintet trace``.
     """
 
     interval: NotNegative = 0.0
@@ -110,6 +113,7 @@ class OutputSettings:
     record: bool = True
     fields: tuple[str, ...] = ()
     watch: tuple[str, ...] = ()
+    trace: bool = False
 
     def __post_init__(self) -> None:
         if self.region and not all(low < high for low, high in zip(*self.region, strict=True)):
