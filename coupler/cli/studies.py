@@ -19,7 +19,10 @@ MINUTES = "with --all: start no run that would end later (default: 60)"
 README = "with --all: put the table between <!-- study --> and <!-- studied --> of this file"
 ALL = "scan all scenes that come with quintet and have scans"
 OVER = "a key and its values, as in components.plate.thickness=0.002,0.004; may be repeated"
-JOBS = "runs at once (default: 2)"
+JOBS = "runs at once (default: 2; in the queue of SLURM: 64)"
+ENGINE = "what does the runs: this host, or SLURM, of which each run is a job (default: local)"
+SBATCH = "option of sbatch for each run, as in --sbatch=--time=01:00:00; may be repeated"
+SNAKEFILE = "run nothing: write a Snakefile whose rules do the same runs"
 RETRY = "repeat a run so often whose process was killed from outside (default: 1)"
 SWEEP_OUT = "folder of all runs, new or of a former sweep (default: runs/SCENE-sweep)"
 ALL_CONTROLS = "the controls of all scenes that come with quintet, cheapest first"
@@ -56,7 +59,10 @@ def add_commands(command: Command) -> None:
     sweep = command("sweep", series, "run a scene for each combination of the values of some keys")
     add_scene(sweep)
     sweep.add_argument("--over", action="append", default=[], metavar="KEY=VALUE,...", help=OVER)
-    sweep.add_argument("--jobs", type=int, default=2, metavar="N", help=JOBS)
+    sweep.add_argument("--jobs", type=int, metavar="N", help=JOBS)
+    sweep.add_argument("--engine", choices=("local", "slurm"), default="local", help=ENGINE)
+    sweep.add_argument("--sbatch", action="append", default=[], metavar="OPTION", help=SBATCH)
+    sweep.add_argument("--snakefile", type=Path, metavar="FILE", help=SNAKEFILE)
     sweep.add_argument("--retry", type=int, default=1, metavar="N", help=RETRY)
     sweep.add_argument("--json", type=Path, metavar="FILE", help=FOR_PROGRAMS)
     sweep.add_argument("--out", type=Path, metavar="DIR", help=SWEEP_OUT)

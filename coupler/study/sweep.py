@@ -5,7 +5,9 @@ is kept in memory that is not in the folder: started again, a sweep does what is
 """
 
 import argparse
+import contextlib
 import json
+import shlex
 import time
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, ThreadPoolExecutor, wait
@@ -16,11 +18,13 @@ from typing import Any
 
 from quintet.coupler.files.disk import write_whole
 from quintet.coupler.files.json_file import JsonFile
+from quintet.coupler.launch.processes import PYTHON
 from quintet.coupler.report.show import console
 from quintet.coupler.report.sweep_report import draw, table, write_csv
 from quintet.coupler.run import results
 from quintet.coupler.run.folder import share
 from quintet.coupler.run.signals import StopRequest
+from quintet.coupler.scene.overrides import run_arguments
 from quintet.coupler.scene.study_table import Refinement
 from quintet.coupler.scene.sweep_axes import Axis, label, read_axes
 from quintet.coupler.study.row import row_of
@@ -30,6 +34,7 @@ from quintet.coupler.study.sweep_run import ELSEWHERE, JOURNAL, KEPT, Job, carry
 from quintet.interfaces.errors import SceneError
 
 NAME, TABLE, PICTURE = "sweep.json", "sweep.csv", "sweep.png"
+JOBS = {"local": 2, "slurm": 64}  # runs at once, by engine
 POLL = 0.2  # s between two looks for signals
 AGAIN = 1.0  # s until a run that another sweep does is looked at again
 WRITE = 20.0  # s between two writes of the table
@@ -92,7 +97,11 @@ def run_sweep(options: argparse.Namespace) -> int:
     asked = (options.scene, options.preset, options.settings, options.swap, options.transport)
     wanted = JsonFile(options.json, ("scene", "rows"))
     axes = read_axes(options.over)
-    swept = sweep(asked, axes, options.out, options.jobs, options.retry)
+    if options.snakefile:
+        return _write_rules(options, asked, axes)
+    jobs = JOBS[options.engine] if options.jobs is None else options.jobs
+    with _engine(options.engine, jobs, options.sbatch) as executor:
+        swept = sweep(asked, axes, options.out, jobs, options.retry, executor)
     wanted.write(swept.summary())
     screen = console()
     screen.print(table(swept.axes, swept.rows))
@@ -104,6 +113,48 @@ def run_sweep(options: argparse.Namespace) -> int:
     if swept.failed:
         screen.print(f"{len(swept.failed)} runs failed: the same command tries them again")
     return swept.status
+
+
+def _engine(
+    name: str, jobs: int, options: Sequence[str]
+) -> contextlib.AbstractContextManager[Executor | None]:
+    """What does the runs: a batch system, or, for None, this host."""
+    if name == "slurm":
+        # Only sweeps on a cluster need it.
+        from quintet.coupler.study.slurm_executor import SlurmExecutor
+
+        _check_counts(jobs, 0)
+        return SlurmExecutor(jobs, options)
+    if options:
+        raise SceneError(
+            f"sweep: --sbatch is for --engine slurm; found {shlex.join(options)} without. Add "
+            "--engine slurm, or remove it."
+        )
+    return contextlib.nullcontext()
+
+
+def _write_rules(options: argparse.Namespace, asked: Asked, axes: Sequence[Axis]) -> int:
+    """Write the sweep as a Snakefile; run nothing."""
+    # Only sweeps that others run need it.
+    from quintet.coupler.study import snakefile
+
+    snakefile.check_place(options.snakefile)
+    scene, planned = plan(asked, axes, 1, options.retry)
+    folder = share("sweep", scene, (NAME, TABLE, PICTURE, JOURNAL), options.out)
+    jobs = [replace(job, place=folder) for job in planned]
+    words = [*run_arguments(*asked), *(w for text in options.over for w in ("--over", text))]
+    command = [*PYTHON, "-m", "quintet.coupler.cli", "sweep", *words, "--out", str(folder)]
+    snakefile.write_snakefile(options.snakefile, scene, jobs, command, TABLE)
+    print(f"written: {options.snakefile}, {len(jobs)} runs into {folder}")
+    return 0
+
+
+def _check_counts(jobs: int, retry: int) -> None:
+    if jobs < 1 or retry < 0:
+        raise SceneError(
+            f"sweep: --jobs must be 1 or more, --retry 0 or more; found {jobs} and {retry}. "
+            "Correct them."
+        )
 
 
 def sweep(
@@ -131,11 +182,7 @@ def sweep(
         Does the runs; if not given, `jobs` threads of this process, each of which waits for the
         process of a run.
     """
-    if jobs < 1 or retry < 0:
-        raise SceneError(
-            f"sweep: --jobs must be 1 or more, --retry 0 or more; found {jobs} and {retry}. "
-            "Correct them."
-        )
+    _check_counts(jobs, retry)
     scene, planned = plan(asked, axes, jobs, retry)
     folder = share("sweep", scene, (NAME, TABLE, PICTURE, JOURNAL), out)
     swept = Sweep(scene, folder, list(axes))

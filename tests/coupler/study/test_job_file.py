@@ -1,0 +1,90 @@
+"""A run of a sweep can be done from its file, by a batch system or a workflow."""
+
+import json
+import re
+import subprocess
+import sys
+
+import pytest
+from spring_scene import command, found_by, write
+
+from quintet.coupler.study.job_file import JobFiles, cores_of, main, read_end, read_request
+
+STEP = "components.spring.step"
+OVER = ("--over", f"{STEP}=0.02,0.01")
+
+
+@pytest.fixture
+def written(tmp_path):
+    """A scene, and a Snakefile of its sweep."""
+    path = write(tmp_path)
+    rules = ("--snakefile", tmp_path / "Snakefile", "--out", tmp_path / "all")
+    assert command("sweep", path, *OVER, *rules) == 0
+    return path, tmp_path / "Snakefile"
+
+
+@pytest.mark.slow
+def test_rules_name_runs_that_a_sweep_then_finds_complete(written):
+    path, rules = written
+    text = rules.read_text()
+    runs = json.loads(re.search(r"^RUNS = (\{.*?\n\})", text, re.M | re.S)[1])
+    assert list(runs.values()) == [f"{STEP}=0.02", f"{STEP}=0.01"]
+    assert not list(path.parent.glob("all/*/results.json")), "nothing is run"
+    shell = json.loads(re.search(r"threads: 1\n    shell: (.*)", text)[1])
+    for run in runs:
+        line = shell.replace("{wildcards.run}", run)
+        done = subprocess.run(["sh", "-c", line], capture_output=True, text=True)
+        assert done.returncode == 0 and f"{run}: done" in done.stdout, done.stderr
+    status, found = found_by("sweep", path, *OVER)
+    assert status == 0 and [row["kept"] for row in found["rows"]] == [True, True]
+    assert {row["run"] for row in found["rows"]} == set(runs)
+
+
+def test_a_request_is_read_as_it_was_written(written):
+    path, _ = written
+    place = (path.parent / "all").resolve()
+    for request in place.glob("jobs/*.json"):
+        job, _ = read_request(JobFiles(place, request.stem))
+        assert job.name == request.stem and job.place == place
+        assert job.resolved["components"]["spring"]["step"] == job.settings[STEP]
+        assert job.complete() is None and cores_of(job.resolved) == 1
+    assert read_end(JobFiles(place, job.name), "1") is None
+
+
+def test_cores_are_those_of_all_that_compute_at_once():
+    components = {"a": {"threads": 2}, "b": {"ranks": 3}}
+    assert cores_of({"transport": "memory", "components": components}) == 3
+    assert cores_of({"transport": "mpi", "components": components}) == 5
+
+
+def test_wrong_input_is_told(written, capsys, monkeypatch):
+    path, rules = written
+    mine = path.parent / "mine"
+    mine.write_text("mine")
+    assert command("sweep", path, *OVER, "--snakefile", mine) == 2
+    assert "it exists. Name another file." in capsys.readouterr().err
+    assert mine.read_text() == "mine"
+    nowhere = path.parent / "none" / "Snakefile"
+    assert command("sweep", path, *OVER, "--snakefile", nowhere) == 2
+    assert "it must be a file in a folder; it is not" in capsys.readouterr().err
+    assert command("sweep", path, *OVER, "--sbatch=--time=1") == 2
+    assert "--sbatch is for --engine slurm; found --time=1 without" in capsys.readouterr().err
+    monkeypatch.setenv("PATH", "")
+    assert command("sweep", path, *OVER, "--engine", "slurm") == 2
+    assert "--engine slurm needs the programs of SLURM; sbatch, squeue" in capsys.readouterr().err
+    assert main(["one"]) == 2
+    assert "needs FOLDER and HASH; found 1 arguments" in capsys.readouterr().err
+    assert main([str(path.parent / "all"), "0000"]) == 2
+    assert "it must be a run of a sweep; it cannot be read" in capsys.readouterr().err
+
+
+@pytest.mark.full
+def test_snakemake_plans_and_does_the_runs(written):
+    pytest.importorskip("snakemake")
+    path, rules = written
+    line = [sys.executable, "-m", "snakemake", "--snakefile", str(rules), "--cores", "1"]
+    done = subprocess.run(line, capture_output=True, text=True, cwd=path.parent)
+    assert done.returncode == 0, done.stderr
+    assert (path.parent / "all" / "sweep.csv").is_file()
+    again = subprocess.run([*line, "--dry-run"], capture_output=True, text=True, cwd=path.parent)
+    assert "Nothing to be done" in again.stderr + again.stdout
