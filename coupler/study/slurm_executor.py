@@ -20,9 +20,11 @@ from quintet.coupler.study.job_file import JobFiles, cores_of, read_end, write_r
 from quintet.coupler.study.sweep_run import Job, carry_out
 from quintet.interfaces.errors import QuintetError, SceneError
 
+Queue = dict[str, tuple[str, str]]  # state and name of a job, by its number
 PROGRAMS = ("sbatch", "squeue", "scancel")
 POLL = 1.0  # s between two looks at the queue
 LATE = 15.0  # s until a file of another host is seen here
+MARGIN = 60  # s before the limit of a job in which its run is asked to end, with a snapshot
 OUTAGE = 600.0  # s without an answer of SLURM until runs count as lost
 SCRIPT = """#!/bin/bash
 # A run of quintet sweep. All its processes are on this node.
@@ -115,37 +117,47 @@ class SlurmExecutor(Executor):
             except BaseException as error:  # nobody else would hear of it
                 self._fail(error)
 
-    def _queue(self) -> dict[str, str] | None:
-        """Numbers of this user's jobs by name; None where SLURM does not answer."""
-        said = _call("squeue", "--noheader", f"--user={os.getuid()}", "--format=%i %j")
+    def _queue(self) -> Queue | None:
+        """Jobs of this user; None where SLURM does not answer."""
+        said = _call("squeue", "--noheader", f"--user={os.getuid()}", "--format=%i %T %j")
         if said.returncode == 0:
             self._heard = time.monotonic()
-            pairs = [line.split(maxsplit=1) for line in said.stdout.splitlines()]
-            return {name: number for number, name in pairs}
+            jobs = [line.split(maxsplit=2) for line in said.stdout.splitlines()]
+            return {number: (state, name) for number, state, name in jobs}
         if time.monotonic() - self._heard > OUTAGE:
             raise QuintetError(f"SLURM did not answer for {OUTAGE:.0f} s: {said.stderr.strip()}")
         return None
 
-    def _conclude(self, queue: dict[str, str] | None) -> None:
+    def _conclude(self, queue: Queue | None) -> None:
         """Give out the results of jobs that have ended; end those that nobody wants any more."""
-        now, numbers = time.monotonic(), set((queue or {}).values())
+        now = time.monotonic()
         for job in list(self._queued):
             end = read_end(job.files, job.number)
             if end is not None:
                 self._queued.remove(job)
-                job.run.set_result(end)
-            elif queue is not None and job.number not in numbers:
+                if end["status"] == "interrupted" and self._may_go_on(job):  # by its limit of time
+                    self._waiting.append((job.run, job.attempts))
+                else:
+                    job.run.set_result(end)
+            elif queue is not None and job.number not in queue:
                 job.gone = job.gone or now
                 if now - job.gone > LATE or job.run.unwanted:
                     self._queued.remove(job)
                     self._lost(job)
-            elif job.run.unwanted and not job.told:
-                _call("scancel", job.number)
+            elif queue is not None and job.run.unwanted and not job.told:
+                # To its first process alone: a run that gets two signals ends without a snapshot.
+                runs = queue[job.number][0] == "RUNNING"
+                _call("scancel", *(["--batch", "--signal=TERM"] if runs else []), job.number)
                 job.told = True
+
+    @staticmethod
+    def _may_go_on(job: Queued) -> bool:
+        """Whether a run is begun in another job."""
+        return job.attempts <= job.run.job.retry and not job.run.unwanted
 
     def _lost(self, job: Queued) -> None:
         """Repeat a run whose job ended without a word, unless too often."""
-        if job.attempts <= job.run.job.retry and not job.run.unwanted:
+        if self._may_go_on(job):
             job.run.job.note("lost")
             self._waiting.append((job.run, job.attempts))
             return
@@ -156,8 +168,9 @@ class SlurmExecutor(Executor):
         state = "interrupted" if job.run.unwanted else "failed"
         job.run.set_result({"status": state, "fault": {"cause": cause}})
 
-    def _submit(self, queue: dict[str, str] | None) -> None:
+    def _submit(self, queue: Queue | None) -> None:
         """Bring as many runs into the queue as may be there; find those that are."""
+        numbers = {name: number for number, (_, name) in (queue or {}).items()}
         while queue is not None and len(self._queued) < self._jobs:
             with self._lock:
                 if not self._waiting:
@@ -167,7 +180,7 @@ class SlurmExecutor(Executor):
                 continue
             try:
                 files = JobFiles(run.job.place, run.job.name)
-                number = queue.get(job_name(files), "")  # of a sweep that was killed
+                number = numbers.get(job_name(files), "")  # of a sweep that was killed
                 if not number or read_end(files, number) is not None:
                     number = self._begin(run.job)
             except (QuintetError, OSError) as error:
@@ -180,7 +193,7 @@ class SlurmExecutor(Executor):
         files = write_request(job)
         files.end.unlink(missing_ok=True)
         options = [f"--job-name={job_name(files)}", f"--output={files.output}"]
-        options += ["--open-mode=append", "--nodes=1", "--ntasks=1"]
+        options += ["--open-mode=append", "--nodes=1", "--ntasks=1", f"--signal=B:TERM@{MARGIN}"]
         options += [f"--cpus-per-task={cores_of(job.resolved)}", *self._options]
         script = SCRIPT.format(command=shlex.join(files.command()))
         said = _call("sbatch", "--parsable", *options, script=script)
