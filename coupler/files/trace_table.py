@@ -62,5 +62,5 @@ def read_rows(path: Path) -> Iterator[TraceRow]:
         if (who, what) != (RUN, FULL) and who == RUN:
             first = first or seconds
             shift = max(0, round((seconds - first) * SECOND))
-        times = (time + shift for time in (begin, sent, awaited, end))
-        yield TraceRow(who, what, *times, busy, window, count, seconds)
+        begin, sent, awaited, end = (time + shift for time in (begin, sent, awaited, end))
+        yield TraceRow(who, what, begin, sent, awaited, end, busy, window, count, seconds)

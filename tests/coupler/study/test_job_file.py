@@ -58,7 +58,7 @@ def test_cores_are_those_of_all_that_compute_at_once():
 
 
 def test_wrong_input_is_told(written, capsys, monkeypatch):
-    path, rules = written
+    path, _rules = written
     mine = path.parent / "mine"
     mine.write_text("mine")
     assert command("sweep", path, *OVER, "--snakefile", mine) == 2
