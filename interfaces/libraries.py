@@ -14,6 +14,7 @@ EXTRAS = {
     "pyvista": "views3d",
     "imageio": "views3d",
     "imageio_ffmpeg": "views3d",
+    "optuna": "calibrate",
 }  # by the name that is imported
 
 

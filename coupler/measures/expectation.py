@@ -73,6 +73,9 @@ class Expectation:
     relative_to : `unit`
         What a relative error is relative to; if not given, the reference, the size of the curve
         (rms), or 1 (of a ratio whose reference is 0, and of relative_rms).
+    deviation : `unit`
+        Standard deviation of the reference, where an experiment was repeated; an ensemble compares
+        its own with it.
     unit
         Of the measured value.
     source
@@ -115,6 +118,7 @@ class Expectation:
     from_level: Number | None = None
     within: NotNegative
     relative_to: Positive | None = None
+    deviation: Positive | None = None
     unit: str
     source: str
     reference_kind: ReferenceKind = ""

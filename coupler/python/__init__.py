@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     from quintet.coupler.report.run import Run
     from quintet.coupler.scene.listing import Plan
     from quintet.coupler.scene.scene import Scene
+    from quintet.coupler.study.calibrate import Calibration
+    from quintet.coupler.study.ensemble import Ensemble
     from quintet.coupler.study.sweep import Sweep
     from quintet.interfaces.errors import QuintetError, RunError, SceneError
 
@@ -32,7 +34,9 @@ __all__ = [
     "RunError",
     "SceneError",
     "__version__",
+    "calibrate",
     "check",
+    "ensemble",
     "load",
     "resume",
     "run",
@@ -212,13 +216,115 @@ def sweep(
         Combinations have mistakes, all of which are listed; nothing was started.
     """
     # Components import this package, and none needs the coupler: it is loaded on use.
-    from quintet.coupler.scene.overrides import assignments
     from quintet.coupler.scene.sweep_axes import axes_of
     from quintet.coupler.study.sweep import sweep as run_all
 
-    swaps = [f"{name}={kind}" for name, kind in (swap or {}).items()]
-    asked = (str(scene), preset, assignments(settings or {}), swaps, transport)
+    asked = _asked(scene, preset, settings, swap, transport)
     return run_all(asked, axes_of(over), Path(out) if out else None, jobs, retry, executor)
+
+
+def ensemble(
+    scene: str | PathLike[str],
+    runs: int = 32,
+    *,
+    seed: int = 0,
+    preset: str = "",
+    settings: Overrides = None,
+    swap: Mapping[str, str] | None = None,
+    transport: str = "",
+    jobs: int = 2,
+    retry: int = 1,
+    out: str | PathLike[str] | None = None,
+    executor: "Executor | None" = None,
+) -> "Ensemble":
+    """Run a scene with its uncertain inputs drawn at random; see `sweep`.
+
+    Runs that are complete in the folder are not run again. The numbers of a run depend on the seed
+    and on its own number: an ensemble of 32 has the runs of one of 8.
+
+    Parameters
+    ----------
+    runs : int
+        Of the ensemble.
+    seed : int
+        Of the random numbers.
+    out : path
+        Folder of all runs: new, empty, or of a former ensemble; ``runs/NAME-ensemble`` if not
+        given.
+
+    Returns
+    -------
+    Ensemble
+        Its `expectations`: mean, standard deviation, quantiles and confidence interval of each, and
+        whether its reference lies inside; its `rows`: the runs; those that are `failed`.
+
+    Raises
+    ------
+    SceneError
+        The scene has no ``[ensemble]``, or refuses numbers that were drawn; nothing was started.
+    """
+    # Components import this package, and none needs the coupler: it is loaded on use.
+    from quintet.coupler.study.ensemble import ensemble as run_all
+
+    asked = _asked(scene, preset, settings, swap, transport)
+    return run_all(asked, Path(out) if out else None, runs, seed, jobs, retry, executor)
+
+
+def calibrate(
+    scene: str | PathLike[str],
+    over: Mapping[str, Iterable[float]],
+    to: str,
+    runs: int = 20,
+    *,
+    seed: int = 0,
+    preset: str = "",
+    settings: Overrides = None,
+    swap: Mapping[str, str] | None = None,
+    transport: str = "",
+    jobs: int = 2,
+    retry: int = 1,
+    out: str | PathLike[str] | None = None,
+    ensemble: str | PathLike[str] | None = None,
+    executor: "Executor | None" = None,
+) -> "Calibration":
+    """Seek the numbers with which an expectation of a scene fits its reference best; see `sweep`.
+
+    Needs the extra ``calibrate``. Called again, it goes on from the runs that are complete.
+
+    Parameters
+    ----------
+    over : mapping of dotted paths to (low, high)
+        Several keys with commas between them take the same number.
+    to : str
+        Name of the expectation.
+    runs, seed : int
+        Of the optimiser.
+    out : path
+        Folder of all runs: new, empty, or of a former calibration; ``runs/NAME-calibrate`` if not
+        given.
+    ensemble : path
+        Folder of an ensemble, whose standard deviation makes the interval; if not given the
+        tolerance of the expectation does.
+
+    Returns
+    -------
+    Calibration
+        Its `keys`: best value and interval of each; its `misfit` and `rows`.
+
+    Raises
+    ------
+    SceneError
+        The scene refuses an end of a range, or has no such expectation; nothing was started.
+    """
+    # Components import this package, and none needs the coupler: it is loaded on use.
+    from quintet.coupler.scene.key_ranges import ranges_of
+    from quintet.coupler.study.calibrate import calibrate as fit
+
+    asked = _asked(scene, preset, settings, swap, transport)
+    places = Path(out) if out else None, Path(ensemble) if ensemble else None
+    return fit(
+        asked, ranges_of(over), to, places[0], runs, seed, jobs, retry, places[1], executor
+    )  # fmt: skip
 
 
 def load(folder: str | PathLike[str]) -> "Run":
@@ -244,6 +350,21 @@ def load(folder: str | PathLike[str]) -> "Run":
     return Run(Path(folder))
 
 
+def _asked(
+    scene: str | PathLike[str],
+    preset: str,
+    settings: Overrides,
+    swap: Mapping[str, str] | None,
+    transport: str,
+) -> tuple[str, str, list[str], list[str], str]:
+    """Write a scene and its overrides as they stand on the command line."""
+    # Components import this package, and none needs the coupler: it is loaded on use.
+    from quintet.coupler.scene.overrides import assignments
+
+    swaps = [f"{name}={kind}" for name, kind in (swap or {}).items()]
+    return str(scene), preset, assignments(settings or {}), swaps, transport
+
+
 def _scene(
     scene: str | PathLike[str],
     preset: str,
@@ -253,12 +374,9 @@ def _scene(
     imports: bool = True,
 ) -> "Scene":
     # Components import this package, and none needs the coupler: it is loaded on use.
-    from quintet.coupler.scene.overrides import assignments
     from quintet.coupler.scene.read import load as read
 
-    swaps = [f"{name}={kind}" for name, kind in (swap or {}).items()]
-    options = (assignments(settings or {}), swaps, transport)
-    return read(str(scene), preset, *options, imports=imports)
+    return read(*_asked(scene, preset, settings, swap, transport), imports=imports)
 
 
 def _finished(folder: Path, status: int) -> "Run":

@@ -59,6 +59,9 @@ def put(table: dict[str, Any], path: str, value: Any) -> list[str]:
             at = at.setdefault(head, {})
         else:
             return [unknown(place, head, at if isinstance(at, dict) else ())]
+    if isinstance(at, list) and is_index(last, at):
+        at[int(last)] = value
+        return []
     if not isinstance(at, dict):
         return [f"{path} cannot be set: {'.'.join(heads)} is not a table."]
     at[last] = value

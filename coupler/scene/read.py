@@ -35,7 +35,7 @@ from quintet.coupler.scene.stability_checks import Scope
 from quintet.coupler.scene.swap import put_swap
 from quintet.coupler.scene.tables import SceneTables
 from quintet.coupler.scene.toml import read_file, too_many
-from quintet.coupler.scene.variants import VARIED, Variants, read_variants
+from quintet.coupler.scene.variants import LISTS, VARIED, Variants, read_variants
 from quintet.coupler.scene.varied_tables import read_tables
 from quintet.interfaces.errors import LineError, SceneError
 from quintet.interfaces.lines.endpoint import Security, check_endpoint
@@ -105,7 +105,7 @@ def load_variants(
     swaps: Iterable[str] = (),
     transport: str = "",
 ) -> tuple[Scene, Variants]:
-    """Read a scene with its refinements, stability limits and scans, which must suit it."""
+    """Read a scene with its refinements, limits, scans and ensemble, which must suit it."""
     return _load(scene, preset, list(settings), swaps, transport, True, True)
 
 
@@ -181,7 +181,7 @@ def _check(
                 " Shorten it."
             )
         mistakes += _reachable(file) + wrong_name(file.name) + _alone(file, components)
-    series = {key: _tables(table, key, mistakes) for key in VARIED}
+    series = {key: _tables(table, key, mistakes) for key in LISTS}
     series = series if with_variants else {key: [] for key in series}
     scope, check = None, None
     if file is not None and not mistakes:
@@ -189,7 +189,7 @@ def _check(
         expected = {expectation.name: expectation for expectation in expect}
         scope = Scope(file.end, gives, len(links), expected, frozenset(unread))
         check = partial(_check, path, preset=preset, imports=imports) if try_variants else None
-    variants, wrong_variants = read_variants(series, table, check, scope, preset)
+    variants, wrong_variants = read_variants(series, table, check, scope, preset, with_variants)
     mistakes += wrong_variants
     if mistakes or file is None or coupling is None:
         raise SceneError([f"{path.name}: {mistake}" for mistake in dict.fromkeys(mistakes)])

@@ -6,6 +6,7 @@ from typing import Any
 from quintet.coupler.coupling.links.keys import LinkKeys
 from quintet.coupler.measures.expectation import Expectation
 from quintet.coupler.scene.control_table import ControlTable
+from quintet.coupler.scene.ensemble_table import PerturbationTable
 from quintet.coupler.scene.scan_table import ScanTable
 from quintet.coupler.scene.scene import ComponentKeys, GroupSettings
 from quintet.coupler.scene.stability_table import LimitTable
@@ -39,6 +40,8 @@ class SceneTables:
         Settings varied from safe to absurd, to see whether wrong results are reported.
     control
         Wrong settings that the tolerances of expectations must reject.
+    ensemble
+        By name: what is uncertain, and how it is distributed.
     """
 
     components: dict[str, ComponentKeys]
@@ -51,3 +54,4 @@ class SceneTables:
     stability: tuple[LimitTable, ...] = ()
     scan: tuple[ScanTable, ...] = ()
     control: tuple[ControlTable, ...] = ()
+    ensemble: dict[str, PerturbationTable] = field(default_factory=dict)

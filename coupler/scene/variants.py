@@ -1,10 +1,11 @@
-"""Variants of a scene: its refinements, limits, scans and controls, checked with the scene."""
+"""Variants of a scene: its refinements, limits, scans, controls and ensemble, checked with it."""
 
 from collections.abc import Callable
 from copy import deepcopy
 from dataclasses import dataclass, field
 
 from quintet.coupler.scene.control_table import Control, MakeControl, read_controls
+from quintet.coupler.scene.ensemble_table import Perturbation, read_perturbations
 from quintet.coupler.scene.overrides import put, put_preset
 from quintet.coupler.scene.scan_table import Scan, read_scans
 from quintet.coupler.scene.stability_checks import Scope, read_limits
@@ -13,17 +14,20 @@ from quintet.coupler.scene.study_table import Refinement, read_refinements
 from quintet.coupler.scene.varied_tables import MakeVariant, Table
 from quintet.interfaces.errors import SceneError
 
-VARIED = ("study", "stability", "scan", "control")
+LISTS = ("study", "stability", "scan", "control")  # tables in lists
+ENSEMBLE = "ensemble"  # tables by name
+VARIED = (*LISTS, ENSEMBLE)
 
 
 @dataclass(frozen=True, slots=True)
 class Variants:
-    """Refinements, stability limits, scans and controls of a scene."""
+    """Refinements, stability limits, scans, controls and ensemble of a scene."""
 
     study: list[Refinement] = field(default_factory=list)
     stability: list[Limit] = field(default_factory=list)
     scan: list[Scan] = field(default_factory=list)
     control: list[Control] = field(default_factory=list)
+    ensemble: list[Perturbation] = field(default_factory=list)
 
 
 def read_variants(
@@ -32,8 +36,9 @@ def read_variants(
     check: Callable[[Table], object] | None,
     scope: Scope | None,
     preset: str = "",
+    with_ensemble: bool = True,
 ) -> tuple[Variants, list[str]]:
-    """Check refinements, limits, scans and controls; a scene with mistakes has no scope.
+    """Check refinements, limits, scans, controls and ensemble; with mistakes there is no scope.
 
     Controls are those of the scene without a preset.
     """
@@ -46,8 +51,10 @@ def read_variants(
     control_tables = [] if preset else tables["control"]
     make_control = control_maker(scene, check)
     controls, wrong_controls = read_controls(control_tables, make_control, scene, expected)
-    mistakes = wrong + wrong_limits + wrong_scans + wrong_controls
-    return Variants(refinements, limits, scans, controls), mistakes
+    perturbations = scene.get(ENSEMBLE, {}) if with_ensemble else {}
+    drawn, wrong_draws = read_perturbations(perturbations, scene, make_variant)
+    mistakes = wrong + wrong_limits + wrong_scans + wrong_controls + wrong_draws
+    return Variants(refinements, limits, scans, controls, drawn), mistakes
 
 
 def variant_maker(table: Table, check: Callable[[Table], object] | None) -> MakeVariant:

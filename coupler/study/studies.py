@@ -20,9 +20,9 @@ from quintet.coupler.run.folder import share
 from quintet.coupler.run.signals import StopRequest
 from quintet.coupler.scene.read import library
 from quintet.coupler.study.row import row_of
+from quintet.coupler.study.run_jobs import finished
 from quintet.coupler.study.studies_plan import Planned, plan_all, read_studies, within_budget
 from quintet.coupler.study.study import date_of, summarize
-from quintet.coupler.study.sweep import finished
 from quintet.coupler.study.sweep_run import JOURNAL, Job, carry_out
 from quintet.interfaces.errors import SceneError
 

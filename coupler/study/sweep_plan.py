@@ -1,14 +1,15 @@
-"""What a sweep has to run: every combination of values, checked before anything starts."""
+"""What a series has to run: every combination of settings, checked before anything starts."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 from quintet.coupler.run.results import machine
 from quintet.coupler.run.run_scene import check_machine
 from quintet.coupler.scene.overrides import assignments
 from quintet.coupler.scene.read import load
 from quintet.coupler.scene.scene import Scene
-from quintet.coupler.scene.sweep_axes import Axis, combinations, label
+from quintet.coupler.scene.sweep_axes import label
 from quintet.coupler.study.run_hash import run_hash
 from quintet.coupler.study.sweep_run import Job
 from quintet.interfaces.errors import SceneError
@@ -17,8 +18,20 @@ from quintet.interfaces.errors import SceneError
 Asked = tuple[str, str, list[str], list[str], str]
 
 
-def plan(asked: Asked, axes: Sequence[Axis], jobs: int, retry: int) -> tuple[str, list[Job]]:
-    """Check every combination; return the scene's name and the runs, whose folder is unknown.
+def plan(
+    series: str, asked: Asked, products: Sequence[Mapping[str, Any]], jobs: int, retry: int
+) -> tuple[str, list[Job]]:
+    """Check every run; return the scene's name and the runs, whose folder is unknown.
+
+    Parameters
+    ----------
+    series : str
+        The command, for messages.
+    asked : tuple
+        Scene, preset, settings, swaps and transport, as on the command line.
+    products : sequence of mappings
+        Settings of each run by dotted path, on top of these.
+    jobs, retry : int
 
     Raises
     ------
@@ -26,7 +39,6 @@ def plan(asked: Asked, axes: Sequence[Axis], jobs: int, retry: int) -> tuple[str
         With every mistake, each with the combinations that it is in.
     """
     name, preset, settings, swaps, transport = asked
-    products = combinations(axes)
     mistakes: dict[str, list[str]] = {}
     labels: dict[str, str] = {}  # by hash
     planned: list[Job] = []
@@ -43,9 +55,10 @@ def plan(asked: Asked, axes: Sequence[Axis], jobs: int, retry: int) -> tuple[str
         digest, scene_name = run_hash(scene), scene.file.name
         if digest in labels:
             same = f"{labels[digest]} and {label(combination)}"
-            mistakes[f"sweep: {same} are the same run. Remove one of the values."] = []
+            mistakes[f"{series}: {same} are the same run. Remove one of the values."] = []
         labels[digest] = label(combination)
-        planned.append(Job(digest, Path(), asked, combination, scene.resolved, versions, retry))
+        job = Job(digest, Path(), asked, dict(combination), scene.resolved, versions, retry)
+        planned.append(job)
     if mistakes:
         raise SceneError([_told(*entry, len(products)) for entry in mistakes.items()])
     return scene_name, planned
