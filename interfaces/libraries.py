@@ -15,6 +15,7 @@ EXTRAS = {
     "imageio": "views3d",
     "imageio_ffmpeg": "views3d",
     "optuna": "calibrate",
+    "pint": "units",
 }  # by the name that is imported
 
 

@@ -21,7 +21,7 @@ FLOORS = {
         {"libraries"},
         {"units", "params", "recordings"},
         {"component", "keys"},
-        {"ports", "manifest", "rotation", "sums", "faces"},
+        {"ports", "manifest", "rotation", "sums", "faces", "quantities"},
         {"lines"},
         {"serving"},
     ],

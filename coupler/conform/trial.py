@@ -20,6 +20,7 @@ from quintet.interfaces.component import (
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.manifest import ConformCase, Manifest
 from quintet.interfaces.params import read
+from quintet.interfaces.quantities import in_si
 
 STEPS = 3  # that a component is moved before a law looks at it
 
@@ -45,6 +46,9 @@ class Trial:
         self.read_only = True  # whether inputs come as they do over a line
         table = case.params(folder) if callable(case.params) else case.params
         where = f"conform {manifest.kind}, {case.name}"
+        table, mistakes = in_si(manifest.params, table, where)
+        if mistakes:
+            raise SceneError(mistakes)
         self.params, mistakes = read(manifest.params, table, where, folder)
         if mistakes:
             raise SceneError(mistakes)

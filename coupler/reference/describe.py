@@ -23,8 +23,10 @@ from quintet.interfaces.errors import SceneError
 from quintet.interfaces.keys import Key
 from quintet.interfaces.manifest import find, known_kinds
 from quintet.interfaces.params import unknown
+from quintet.interfaces.quantities import is_in_si
 
 PLACE = re.compile(r"(<!-- describe ([^>]+?) -->\n).*?(<!-- described -->)", re.DOTALL)
+TEXTS = 'numbers that have a unit may be texts with a unit of the same dimension, as "20 mm"'
 HEADS = ("key", "unit", "type", "default", "meaning")
 
 
@@ -87,6 +89,8 @@ def lines(reference: Reference, width: int | None) -> Iterator[str]:
             yield from _wrapped(f"{verb} {port_text(port)}", width, "")
     if reference.name in known_kinds() and find(reference.name).ranks:
         yield "may own several MPI ranks (key `ranks`)"
+    if any(key.numeric and is_in_si(key.unit) for part in reference.sections for key in part.keys):
+        yield TEXTS
     for section in reference.sections:
         yield ""
         same = first_line(section.about) == reference.title

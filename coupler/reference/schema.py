@@ -16,14 +16,17 @@ from quintet.coupler.coupling.links import known_links, maker
 from quintet.coupler.coupling.links.keys import LinkKeys
 from quintet.coupler.reference.sections import SCENE_TITLE
 from quintet.coupler.scene.kinds import named_kind
+from quintet.coupler.scene.quantity_texts import OF_OTHERS
 from quintet.coupler.scene.scene import ComponentKeys, SceneFile
 from quintet.coupler.scene.tables import SceneTables
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.keys import about, keys
 from quintet.interfaces.manifest import known_kinds
+from quintet.interfaces.quantities import PATTERN, is_in_si
 
 Schema = dict[str, Any]
 REFERENCE = "#/definitions/{model}"
+BOUNDS = {"minimum", "maximum", "exclusiveMinimum", "exclusiveMaximum"}
 OWN_CLASS = {"type": "string", "pattern": ":", "description": "module:Class"}
 
 
@@ -41,6 +44,8 @@ class Described(GenerateJsonSchema):
             entry["description"] = (key.meaning + unit).strip()
             if key.unit:
                 entry["unit"] = key.unit
+            if key.numeric and (is_in_si(key.unit) or key.unit in OF_OTHERS):
+                table["properties"][key.name] = _or_quantity(entry)
         return table
 
 
@@ -84,6 +89,20 @@ def scene_schema(more_kinds: Iterable[str] = ()) -> Schema:
         "definitions": definitions,
     }
     return dict(_plain(_used(whole)))
+
+
+def _or_quantity(schema: Any) -> Any:
+    """Accept a text with a unit in the place of each number of a key."""
+    if isinstance(schema, list):
+        return [_or_quantity(part) for part in schema]
+    if not isinstance(schema, dict):
+        return schema
+    if schema.get("type") != "number":
+        return {key: _or_quantity(part) for key, part in schema.items()}
+    bounds = {key: schema[key] for key in schema.keys() & BOUNDS}
+    others = {key: part for key, part in schema.items() if key not in (*bounds, "type")}
+    number = {"type": "number", **dict(sorted(bounds.items()))}
+    return {**others, "anyOf": [number, {"type": "string", "pattern": PATTERN}]}
 
 
 def _params(kind: str) -> type | None:

@@ -2,6 +2,7 @@
 
 from typing import Any
 
+from quintet.coupler.scene.quantity_texts import scene_in_si
 from quintet.coupler.scene.read import parse
 from quintet.coupler.scene.scene import Scene
 from quintet.coupler.scene.stability_table import LimitTable
@@ -15,7 +16,8 @@ DECISIVE = ("components", "links", "groups", "window", "scheme", "iteration")
 def beyond_limits(scene: Scene) -> dict[str, str]:
     """Say by name which limits of a scene it runs beyond: those whose settings are the scene's."""
     beyond = {}
-    plain = parse(scene.path)
+    is_read = not any(plan.unread for plan in scene.components.values())
+    plain, _ = scene_in_si(parse(scene.path), scene.folder, imports=is_read)
     tables = plain.get("stability")
     for table in tables if isinstance(tables, list) else ():
         limit, _ = read(LimitTable, table, "stability") if isinstance(table, dict) else (None, [])

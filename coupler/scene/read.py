@@ -23,6 +23,7 @@ from quintet.coupler.scene.groups import (
 from quintet.coupler.scene.link_tables import read_links
 from quintet.coupler.scene.needs import refused_times
 from quintet.coupler.scene.overrides import put_preset, put_set
+from quintet.coupler.scene.quantity_texts import scene_in_si
 from quintet.coupler.scene.scene import (
     ComponentPlan,
     Scene,
@@ -154,6 +155,9 @@ def _check(
     tables = tables if imports else trusted_tables(tables, path.parent)
     look_in(import_folders(path, tables))
     announce(kinds_of(tables), path.parent)
+    table, wrong_units = scene_in_si(table, path.parent, imports)
+    if wrong_units:
+        raise SceneError([f"{path.name}: {mistake}" for mistake in wrong_units[:MOST_TOLD]])
     keys = {key: value for key, value in table.items() if key not in TABLES}
     file, mistakes = read(SceneFile, keys, "scene")
     mistakes = [_also_tables(mistake) for mistake in mistakes]

@@ -19,7 +19,7 @@ from quintet.coupler.run.folder import share
 from quintet.coupler.scene.overrides import run_arguments
 from quintet.coupler.scene.sweep_axes import Axis, combinations, read_axes
 from quintet.coupler.study.run_jobs import Row, check_numbers, failed_rows, run_jobs, status_of
-from quintet.coupler.study.sweep_plan import Asked, plan
+from quintet.coupler.study.sweep_plan import Asked, axes_of_jobs, plan
 from quintet.coupler.study.sweep_run import JOURNAL
 from quintet.interfaces.errors import SceneError
 
@@ -156,12 +156,12 @@ def sweep(
     check_numbers("sweep", jobs, retry)
     scene, planned = plan("sweep", asked, combinations(axes), jobs, retry)
     folder = share("sweep", scene, (NAME, TABLE, PICTURE, JOURNAL), out)
-    swept = Sweep(scene, folder, list(axes))
+    swept = Sweep(scene, folder, axes_of_jobs(axes, planned))
     tasks = [replace(job, place=folder) for job in planned]
     print(f"{scene}: {len(tasks)} runs, {jobs} at once, in {folder}", flush=True)
 
     def write(rows: Sequence[Row]) -> None:
-        write_csv(axes, rows, folder / TABLE)
+        write_csv(swept.axes, rows, folder / TABLE)
 
     swept.rows = run_jobs(tasks, jobs, executor, write)
     write(swept.rows)

@@ -6,13 +6,15 @@ from typing import Any
 
 from quintet.coupler.run.results import machine
 from quintet.coupler.run.run_scene import check_machine
-from quintet.coupler.scene.overrides import assignments
+from quintet.coupler.scene.overrides import assignments, value_text
 from quintet.coupler.scene.read import load
 from quintet.coupler.scene.scene import Scene
-from quintet.coupler.scene.sweep_axes import label
+from quintet.coupler.scene.sweep_axes import Axis, label
+from quintet.coupler.scene.varied_tables import value_at
 from quintet.coupler.study.run_hash import run_hash
 from quintet.coupler.study.sweep_run import Job
 from quintet.interfaces.errors import SceneError
+from quintet.interfaces.quantities import has_quantities
 
 # Scene, preset, settings, swaps and transport, as on the command line.
 Asked = tuple[str, str, list[str], list[str], str]
@@ -57,11 +59,36 @@ def plan(
             same = f"{labels[digest]} and {label(combination)}"
             mistakes[f"{series}: {same} are the same run. Remove one of the values."] = []
         labels[digest] = label(combination)
-        job = Job(digest, Path(), asked, dict(combination), scene.resolved, versions, retry)
-        planned.append(job)
+        numbers = _in_si(combination, scene)
+        planned.append(Job(digest, Path(), asked, numbers, scene.resolved, versions, retry))
     if mistakes:
         raise SceneError([_told(*entry, len(products)) for entry in mistakes.items()])
     return scene_name, planned
+
+
+def _in_si(settings: Mapping[str, Any], scene: Scene) -> dict[str, Any]:
+    """Settings with numbers in the place of texts with units, as the scene runs."""
+    return {
+        path: value_at(scene.resolved, path)[0] if has_quantities(value) else value
+        for path, value in settings.items()
+    }
+
+
+def axes_of_jobs(axes: Sequence[Axis], jobs: Sequence[Job]) -> list[Axis]:
+    """Axes with the values of the runs: of texts with units the numbers."""
+    return [
+        Axis(
+            axis.path,
+            tuple(
+                {
+                    value_text(job.settings[axis.path]): job.settings[axis.path] for job in jobs
+                }.values()
+            ),
+        )
+        if has_quantities(axis.values)
+        else axis
+        for axis in axes
+    ]
 
 
 def _check(scene: Scene, jobs: int) -> None:
