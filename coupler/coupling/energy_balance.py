@@ -12,6 +12,7 @@ part of what is unexplained. Its heat over links has, below 0, what is on its wa
 
 from collections import defaultdict
 from collections.abc import Mapping
+from copy import deepcopy
 from dataclasses import asdict, dataclass
 from typing import Any
 
@@ -225,10 +226,10 @@ class EnergyBalance:
         """All of it, for a snapshot."""
         return {
             "components": {name: asdict(part) for name, part in self._components.items()},
-            "brought": {link: dict(sides) for link, sides in self._brought.items()},
+            "brought": deepcopy(dict(self._brought)),  # it goes on after a trial window
             "times": self._times,
             "excess": self._largest_excess,
-            "masses": self._masses,
+            "masses": deepcopy(self._masses),
         }
 
     def load(self, state: Mapping[str, Any]) -> None:

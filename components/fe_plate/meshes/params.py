@@ -1,6 +1,7 @@
 """What a scene says about the parts of a structure: their shapes, meshes, materials."""
 
 import math
+from bisect import bisect_left, bisect_right
 from collections.abc import Sequence
 from pathlib import Path
 from typing import ClassVar, Literal
@@ -98,7 +99,7 @@ class MeshedPart(BoxKeys, CylinderKeys, MeshKeys):
             return (1 if self.quarter else 4) * a * (a + 2 * b) * c
         if self.shape == "mesh":
             return len(self.placed().corner)
-        return a * b * c - math.prod(int(inside.sum()) for inside in self.cut_out())
+        return a * b * c - math.prod(end - begin for begin, end in self._cut_out_ranges())
 
     def placed(self) -> FileMesh:
         """Nodes where they are [m], and elements, which are checked; with notes of both."""
@@ -112,16 +113,30 @@ class MeshedPart(BoxKeys, CylinderKeys, MeshKeys):
 
     def cut_out(self) -> tuple[Flags, Flags, Flags]:
         """Which elements of a box have a middle within its cutout, along each of x, y and z."""
-        low, high = self.geometry.bounds
-        inside_along = []
-        for along, count in enumerate(self.counts):
-            middle = low[along] + (high[along] - low[along]) * (np.arange(count) + 0.5) / count
-            inside = np.zeros(count, bool)
-            if self.cutout is not None:
-                inside = self.cutout.lowest[along] <= middle
-                inside &= middle <= self.cutout.highest[along]
-            inside_along.append(inside)
+        inside_along = [np.zeros(count, bool) for count in self.counts]
+        for inside, (begin, end) in zip(inside_along, self._cut_out_ranges(), strict=True):
+            inside[begin:end] = True
         return inside_along[0], inside_along[1], inside_along[2]
+
+    def _cut_out_ranges(self) -> list[tuple[int, int]]:
+        """Ranges of these elements along each axis, however many there are."""
+        if self.cutout is None:
+            return [(0, 0)] * 3
+        low, high = self.geometry.bounds
+        ranges = []
+        for along, count in enumerate(self.counts):
+            begins, extent = low[along], high[along] - low[along]
+
+            def middle(
+                k: int, begins: float = begins, extent: float = extent, n: int = count
+            ) -> float:
+                return begins + extent * (k + 0.5) / n
+
+            places = range(count)
+            begin = bisect_left(places, self.cutout.lowest[along], key=middle)
+            end = bisect_right(places, self.cutout.highest[along], key=middle)
+            ranges.append((begin, max(begin, end)))
+        return ranges
 
     def edges(self) -> tuple[float, ...]:
         """Edges [m] of its smallest elements; of a cylinder about."""
