@@ -4,6 +4,7 @@ import json
 import subprocess
 import sys
 import tomllib
+from pathlib import Path
 
 import jsonschema
 import pytest
@@ -87,7 +88,7 @@ def test_a_sweep_over_texts_is_the_sweep_over_their_numbers(toy, capsys):
     over = ("sweep", toy, "--out", "out", "--over")
     assert status(*over, "window=1 ms,2 ms", "--json", "texts.json") == 0
     assert status(*over, "window=1e-3,2e-3", "--json", "numbers.json") == 0
-    texts, numbers = (json.loads(open(f"{n}.json").read()) for n in ("texts", "numbers"))
+    texts, numbers = (json.loads(Path(f"{n}.json").read_text()) for n in ("texts", "numbers"))
     assert texts["over"] == numbers["over"] == {"window": [0.001, 0.002]}
     for key in ("run", "label", "settings", "status", "items"):  # not the command, nor whether kept
         assert [row[key] for row in texts["rows"]] == [row[key] for row in numbers["rows"]], key
