@@ -71,7 +71,10 @@ class SolverRun:
             **{f"view {name}": array for name, array in view.items()},
             **{f"walls {name}": array for name, array in solver.walls().items()},
             **{f"described {name}": array for name, array in solver.describe().items()},
-            **{f"total {name}": np.array(total) for name, total in asdict(solver.totals()).items()},
+            **{
+                f"total {name}": np.array("unknown" if total is None else total)
+                for name, total in asdict(solver.totals()).items()
+            },
             "warned": np.array(sorted(warned.items()), dtype=str),
             "notes": np.array(solver.notes(), dtype=str),
             "stable step": np.array(solver.stable_dt()),

@@ -179,29 +179,29 @@ def test_the_lock_of_a_process_that_died_is_no_obstacle(tmp_path):
 def test_only_a_run_is_resumed(scene, tmp_path, capsys):
     assert status("run", "--resume", tmp_path) == 2
     assert f"{tmp_path}: it must be the folder of a run" in capsys.readouterr().err
-    assert status("study", scene, "--out", "all") == 1
+    assert status("study", scene, "--out", "all") == 0
     assert status("run", "--resume", "all") == 2
     assert "it must be the folder of a run; it is that of a study." in capsys.readouterr().err
 
 
 def test_a_study_replaces_only_what_a_study_wrote(scene, tmp_path, capsys):
     out = tmp_path / "all"
-    assert status("study", scene, "--out", out) == 1
+    assert status("study", scene, "--out", out) == 0
     first = content(out)
     assert status("study", scene, "--out", out) == 2
     assert "it holds a study of toy." in capsys.readouterr().err
     assert status("run", scene, "--out", out, "--force") == 2
     assert content(out) == first
-    assert status("study", scene, "--out", out, "--keep") == 1
+    assert status("study", scene, "--out", out, "--keep") == 0
     (out / "notes.txt").write_text("mine")
-    assert status("study", scene, "--out", out, "--force") == 1
+    assert status("study", scene, "--out", out, "--force") == 0
     assert content(out).keys() == first.keys() | {"notes.txt"}
     assert (out / "a" / "run.log").read_text()
 
 
 def test_a_study_begins_nothing_where_a_run_would_meet_foreign_files(scene, tmp_path):
     out = tmp_path / "all"
-    assert status("study", scene, "--out", out) == 1
+    assert status("study", scene, "--out", out) == 0
     (out / "b" / MARKER).unlink()
     before = content(out)
     assert status("study", scene, "--out", out, "--keep") == 2
