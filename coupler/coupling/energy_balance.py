@@ -6,8 +6,9 @@ Of a component, between the first and the last time at which totals were noted:
         = work from outside + work over links + heat over links - lost + unexplained
 
 Of the run the same holds of all components that report energies. Its work over links is that of the
-links to components that report none; work that both sides of the other links count differently is
-part of what is unexplained. Its heat over links has, below 0, what is on its way at the end.
+links to components that report none. Work that the two sides of another link count differently is
+part of the unexplained energy. Heat that is still on its way at the end counts as negative heat
+over links.
 """
 
 from collections import defaultdict
@@ -42,7 +43,7 @@ class Balance:
         What is left over; None if it reports no dissipation and energy is missing, for that may all
         be dissipated.
     gained : float
-        The largest rise of what is unexplained above its start, at any time.
+        The largest increase of the unexplained energy since the start, at any time.
     coupling : float
         Of the run, part of what is unexplained: work that one side of its links took beyond what
         the other gave.
@@ -66,7 +67,7 @@ class ComponentEnergy:
     first: list[float]  # energy, work from outside, dissipated
     last: list[float]
     dissipates: bool  # whether it reports what it dissipates
-    largest_excess: float = 0.0  # largest rise of what is unexplained
+    largest_excess: float = 0.0  # largest increase of the unexplained energy
 
     @property
     def reports(self) -> bool:

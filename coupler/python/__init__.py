@@ -255,8 +255,9 @@ def ensemble(
     Returns
     -------
     Ensemble
-        Its `expectations`: mean, standard deviation, quantiles and confidence interval of each, and
-        whether its reference lies inside; its `rows`: the runs; those that are `failed`.
+        `expectations` has the mean, standard deviation, quantiles and confidence interval of each
+        expectation, and whether its reference lies inside; `rows` the runs, `failed` those that
+        failed.
 
     Raises
     ------

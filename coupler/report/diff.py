@@ -1,6 +1,6 @@
 """The first difference between two recordings: window, component, field and item, bit for bit.
 
-The fields that both have are compared; those that only one has are named.
+Fields that both recordings have are compared; fields that only one of them has are listed.
 """
 
 from collections.abc import Collection, Iterator, Sequence

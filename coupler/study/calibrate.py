@@ -30,7 +30,7 @@ from quintet.coupler.scene.key_ranges import KeyRange, read_ranges
 from quintet.coupler.scene.read import load
 from quintet.coupler.scene.sweep_axes import Axis
 from quintet.coupler.study.ensemble import scatter_of
-from quintet.coupler.study.run_jobs import Row, check_numbers, failed_rows, run_jobs, status_of
+from quintet.coupler.study.run_jobs import Row, RunSeries, check_numbers, run_jobs
 from quintet.coupler.study.sweep_plan import Asked, plan
 from quintet.coupler.study.sweep_progress import SweepProgress
 from quintet.coupler.study.sweep_run import JOURNAL, Job
@@ -49,7 +49,7 @@ MOST = 1000  # runs
 
 
 @dataclass(slots=True)
-class Calibration:
+class Calibration(RunSeries):
     """A calibration: its runs, the best value of each key, and an interval of it.
 
     Attributes
@@ -82,21 +82,6 @@ class Calibration:
     rows: list[Row] = field(default_factory=list)
     keys: dict[str, Row] = field(default_factory=dict)
     misfit: float | None = None
-
-    @property
-    def ok(self) -> bool:
-        """Whether all runs are done."""
-        return self.status == results.DONE
-
-    @property
-    def status(self) -> int:
-        """Exit status: 0 if all runs are done, 130 if it was interrupted, 3 if some failed."""
-        return status_of(self.rows)
-
-    @property
-    def failed(self) -> list[Row]:
-        """Runs that failed."""
-        return failed_rows(self.rows)
 
     def summary(self) -> Row:
         """All of it, for programs."""

@@ -82,8 +82,8 @@ class Controls:
                 time.sleep(AGAIN)
                 run = carry_out(job, self.stop)
             what = " ".join(word for word in (scene.file.name, preset) if word)
-            said = "found complete" if run.get(KEPT) else run["status"]
-            print(f"{what}: {', '.join(assignments(_own(settings)))}: {said}", flush=True)
+            outcome = "found complete" if run.get(KEPT) else run["status"]
+            print(f"{what}: {', '.join(assignments(_own(settings)))}: {outcome}", flush=True)
             self.runs[job.name] = run
         return self.runs[job.name]
 

@@ -28,7 +28,7 @@ from quintet.coupler.scene.ensemble_table import Perturbation, draw_settings
 from quintet.coupler.scene.read import load_variants
 from quintet.coupler.scene.scene import Scene
 from quintet.coupler.scene.sweep_axes import Axis
-from quintet.coupler.study.run_jobs import Row, check_numbers, failed_rows, run_jobs, status_of
+from quintet.coupler.study.run_jobs import Row, RunSeries, check_numbers, run_jobs
 from quintet.coupler.study.sweep_plan import Asked, plan
 from quintet.coupler.study.sweep_run import JOURNAL
 from quintet.interfaces.errors import SceneError
@@ -38,7 +38,7 @@ MOST = 10_000  # runs
 
 
 @dataclass(slots=True)
-class Ensemble:
+class Ensemble(RunSeries):
     """An ensemble: its runs, and the statistics of what they gave.
 
     Attributes
@@ -65,21 +65,6 @@ class Ensemble:
     perturbations: dict[str, Row]
     rows: list[Row] = field(default_factory=list)
     expectations: list[Row] = field(default_factory=list)
-
-    @property
-    def ok(self) -> bool:
-        """Whether all runs are done."""
-        return self.status == results.DONE
-
-    @property
-    def status(self) -> int:
-        """Exit status: 0 if all runs are done, 130 if it was interrupted, 3 if some failed."""
-        return status_of(self.rows)
-
-    @property
-    def failed(self) -> list[Row]:
-        """Runs that failed; no statistics have them."""
-        return failed_rows(self.rows)
 
     def summary(self) -> Row:
         """All of it, for programs."""

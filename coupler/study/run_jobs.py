@@ -61,6 +61,28 @@ def run_jobs(
             shown.close()
 
 
+class RunSeries:
+    """What a sweep, an ensemble and a calibration tell of their runs."""
+
+    __slots__ = ()
+    rows: list[Row]
+
+    @property
+    def ok(self) -> bool:
+        """Whether all runs are done."""
+        return self.status == results.DONE
+
+    @property
+    def status(self) -> int:
+        """Exit status: 0 if all runs are done, 130 if it was interrupted, 3 if some failed."""
+        return status_of(self.rows)
+
+    @property
+    def failed(self) -> list[Row]:
+        """Runs that failed; statistics leave them out."""
+        return failed_rows(self.rows)
+
+
 def check_numbers(series: str, jobs: int, retry: int) -> None:
     """Refuse numbers of runs at once, and of repetitions, that mean nothing."""
     if jobs < 1 or retry < 0:

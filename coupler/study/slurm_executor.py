@@ -119,13 +119,13 @@ class SlurmExecutor(Executor):
 
     def _queue(self) -> Queue | None:
         """Jobs of this user; None where SLURM does not answer."""
-        said = _call("squeue", "--noheader", f"--user={os.getuid()}", "--format=%i %T %j")
-        if said.returncode == 0:
+        reply = _call("squeue", "--noheader", f"--user={os.getuid()}", "--format=%i %T %j")
+        if reply.returncode == 0:
             self._heard = time.monotonic()
-            jobs = [line.split(maxsplit=2) for line in said.stdout.splitlines()]
+            jobs = [line.split(maxsplit=2) for line in reply.stdout.splitlines()]
             return {number: (state, name) for number, state, name in jobs}
         if time.monotonic() - self._heard > OUTAGE:
-            raise QuintetError(f"SLURM did not answer for {OUTAGE:.0f} s: {said.stderr.strip()}")
+            raise QuintetError(f"SLURM did not answer for {OUTAGE:.0f} s: {reply.stderr.strip()}")
         return None
 
     def _conclude(self, queue: Queue | None) -> None:
@@ -196,10 +196,10 @@ class SlurmExecutor(Executor):
         options += ["--open-mode=append", "--nodes=1", "--ntasks=1", f"--signal=B:TERM@{MARGIN}"]
         options += [f"--cpus-per-task={cores_of(job.resolved)}", *self._options]
         script = SCRIPT.format(command=shlex.join(files.command()))
-        said = _call("sbatch", "--parsable", *options, script=script)
-        if said.returncode:
-            raise QuintetError(f"sbatch refused the run: {said.stderr.strip()}")
-        return said.stdout.strip().partition(";")[0]
+        reply = _call("sbatch", "--parsable", *options, script=script)
+        if reply.returncode:
+            raise QuintetError(f"sbatch refused the run: {reply.stderr.strip()}")
+        return reply.stdout.strip().partition(";")[0]
 
     def _fail(self, error: BaseException) -> None:
         """Give an error to all who wait."""

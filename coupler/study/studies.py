@@ -117,8 +117,8 @@ def _run(tasks: list[Planned], seconds: float, stop: Callable[[], bool]) -> None
             wall = run.get("timing", {}).get("wall", 0.0)
             if run["status"] == NOT_RUN:
                 continue
-            said = f"{entry.scene} {entry.refinement.label}: {run['status']}, {wall:.1f} s"
-            print(f"{number} of {len(jobs)}: {said}", flush=True)
+            line = f"{entry.scene} {entry.refinement.label}: {run['status']}, {wall:.1f} s"
+            print(f"{number} of {len(jobs)}: {line}", flush=True)
 
 
 def collect(planned: list[Planned], before: list[Row]) -> list[Row]:

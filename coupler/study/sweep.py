@@ -18,7 +18,7 @@ from quintet.coupler.run import results
 from quintet.coupler.run.folder import share
 from quintet.coupler.scene.overrides import run_arguments
 from quintet.coupler.scene.sweep_axes import Axis, combinations, read_axes
-from quintet.coupler.study.run_jobs import Row, check_numbers, failed_rows, run_jobs, status_of
+from quintet.coupler.study.run_jobs import Row, RunSeries, check_numbers, run_jobs
 from quintet.coupler.study.sweep_plan import Asked, axes_of_jobs, plan
 from quintet.coupler.study.sweep_run import JOURNAL
 from quintet.interfaces.errors import SceneError
@@ -28,7 +28,7 @@ JOBS = {"local": 2, "slurm": 64}  # runs at once, by engine
 
 
 @dataclass(slots=True)
-class Sweep:
+class Sweep(RunSeries):
     """A sweep: its runs, and what is known of them.
 
     Attributes
@@ -48,21 +48,6 @@ class Sweep:
     folder: Path
     axes: list[Axis]
     rows: list[Row] = field(default_factory=list)
-
-    @property
-    def ok(self) -> bool:
-        """Whether all runs are done."""
-        return self.status == results.DONE
-
-    @property
-    def status(self) -> int:
-        """Exit status: 0 if all runs are done, 130 if it was interrupted, 3 if some failed."""
-        return status_of(self.rows)
-
-    @property
-    def failed(self) -> list[Row]:
-        """Runs that failed."""
-        return failed_rows(self.rows)
 
     def summary(self) -> Row:
         """All of it, for programs."""
