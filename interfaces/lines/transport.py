@@ -33,7 +33,7 @@ T = TypeVar("T")
 SPIN = 3e-4  # s of polling without sleep: longer than a round trip, shorter than any step
 SLEEP = 2e-5  # s, the first sleep
 LONGEST_SLEEP = 1e-3  # s
-SETTLING = 0.05  # s from a connection's end until the system knows how the process ended
+SETTLING = 0.5  # s from a connection's end within which the system knows how the process ended
 REPEAT = 5.0  # s without an answer until the last message is sent again; then 10 s, and so on
 
 
@@ -87,6 +87,11 @@ def wait(poll: Callable[[], T | None], seconds: float, broken: Callable[[], str]
         pause = min(1.3 * pause, LONGEST_SLEEP)
 
 
+def unknown() -> str:
+    """Why an answer will not come, where nobody watches the other side."""
+    return ""
+
+
 class FramedLine(ABC):
     """A line over a transport of bytes: numbered messages of one run, in order and complete."""
 
@@ -96,7 +101,7 @@ class FramedLine(ABC):
     def __init__(self, run: str, name: str) -> None:
         self.run = run  # "" until the first message of the coupler
         self.name = name  # who sends
-        self.watch: Callable[[], str] = lambda: ""  # why an answer will not come, if known
+        self.watch: Callable[[], str] = unknown  # why an answer will not come, if known
         self.repeat_after = math.inf  # s without an answer until the last message is sent again
         self.answers_again = False  # whether to do so when the other side repeats its last message
         self._repeat_at, self._pause = math.inf, math.inf  # s
@@ -187,10 +192,14 @@ class FramedLine(ABC):
 
     def _reason(self) -> str:
         self._repeat()
-        broken = self._broken()
-        if broken:
-            time.sleep(SETTLING)
-        return self.watch() or broken
+        if not (broken := self._broken()):
+            return self.watch()
+        limit = time.monotonic() + SETTLING
+        while not (ending := self.watch()):
+            if self.watch is unknown or time.monotonic() > limit:
+                break
+            time.sleep(0.01)
+        return ending or broken
 
     @abstractmethod
     def _put(self, frame: bytearray) -> None:
