@@ -13,7 +13,7 @@ from quintet.components.dem_bodies.ports import SHOWS
 from quintet.components.dem_bodies.shapes.sampling import sample
 from quintet.components.dem_bodies.shapes.solid import solids
 from quintet.components.dem_bodies.start import described, masses
-from quintet.components.dem_bodies.view import Extents, planes_view, view
+from quintet.components.dem_bodies.view import extent, planes_view, view
 from quintet.interfaces.component import (
     ONE_THREAD,
     Array,
@@ -52,10 +52,10 @@ class DemBodies(Component):
     def __init__(self, params: DemBodiesParams, resources: Resources = ONE_THREAD) -> None:
         self.params, (self.takes, self.gives) = params, self.ports_of(params)
         self.bodies, self.solids = params.placed, solids(params.placed)  # of the kinds of bodies
-        self.extents = Extents()  # where the bodies were when walls were asked for
         number = build.balls_first(self.bodies)
         model = build.model(params, self.bodies, number, self.solids)
         state, parts = build.state(self.bodies, number, self.solids), (self.bodies, self.solids)
+        self.begun_in = extent(state)  # box around the bodies at the start
         self.stepping = features.stepping(params, model, state, *parts, resources)
         self.model, self.state = self.stepping.model, self.stepping.state
         self.lists = self.stepping.lists
@@ -192,12 +192,11 @@ class DemBodies(Component):
         return view(self.bodies, self.solids, state) if self.stepping.answers else {}
 
     def walls(self) -> Fields:
-        """Polygons on the planes, near all places where the bodies were when this was asked."""
+        """Polygons on the planes, near where the bodies were at the start and where they are."""
         model, state = self.stepping.whole("motion")
         if not self.stepping.answers:
             return {}
-        self.extents.add(state)
-        return planes_view(model.plane, self.extents)
+        return planes_view(model.plane, (self.begun_in, extent(state)))
 
     def items(self) -> int:
         """Count the bodies."""

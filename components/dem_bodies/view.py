@@ -50,21 +50,14 @@ def mesh(file: str, scale: float) -> body_view.Outline:
     return body_view.Outline(points, np.zeros(len(points)), cells.reshape(-1, 3))
 
 
-class Extents:
-    """The box in which bodies have been seen so far: planes are shown around all of it."""
-
-    def __init__(self) -> None:
-        self.low, self.high = np.full(3, np.inf), np.full(3, -np.inf)  # m
-
-    def add(self, state: State) -> None:
-        """Take in where the bodies are now."""
-        where, radius = state.position[:-1], state.motion[:-1, 3, None]
-        self.low = np.minimum(self.low, (where - radius).min(axis=0))
-        self.high = np.maximum(self.high, (where + radius).max(axis=0))
+def extent(state: State) -> tuple[Array, Array]:
+    """Lower and upper corners (3,) of the box around the bodies [m]."""
+    where, radius = state.position[:-1], state.motion[:-1, 3, None]
+    return (where - radius).min(axis=0), (where + radius).max(axis=0)
 
 
-def planes_view(planes: Numbers, bodies: Extents) -> Fields:
-    """Polygons on planes (p, 4): the part of each before the others, and near the bodies."""
+def planes_view(planes: Numbers, bodies: Sequence[tuple[Array, Array]]) -> Fields:
+    """Polygons on planes (p, 4): the part of each before the others, and near boxes of bodies."""
     normals = planes[:, :3]
     points = normals * planes[:, 3:]
     low, high, size = _near_bodies(points, normals, bodies)
@@ -84,9 +77,12 @@ def planes_view(planes: Numbers, bodies: Extents) -> Fields:
     return polygons(outlines)
 
 
-def _near_bodies(points: Array, normals: Array, bodies: Extents) -> tuple[Array, Array, float]:
+def _near_bodies(
+    points: Array, normals: Array, bodies: Sequence[tuple[Array, Array]]
+) -> tuple[Array, Array, float]:
     """Corners (3,) m of a box around bodies and their feet on planes; its size without rim [m]."""
-    low, high = bodies.low, bodies.high
+    low = np.min([low for low, _ in bodies], axis=0)
+    high = np.max([high for _, high in bodies], axis=0)
     centre = 0.5 * (low + high)
     feet = centre - normals * ((centre - points) * normals).sum(axis=1, keepdims=True)
     low, high = np.vstack([feet, low]).min(axis=0), np.vstack([feet, high]).max(axis=0)

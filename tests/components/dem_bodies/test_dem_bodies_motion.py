@@ -10,7 +10,7 @@ from dem_scenes import FLOOR, NOTHING, box, build, energy, material, run, sphere
 from scipy.integrate import solve_ivp
 
 from quintet.components.dem_bodies.shapes.sphere_union import measure_union
-from quintet.components.dem_bodies.view import Extents, planes_view
+from quintet.components.dem_bodies.view import extent, planes_view
 from quintet.interfaces.component import outputs_of
 from quintet.interfaces.errors import StepError
 
@@ -237,14 +237,23 @@ def test_planes_are_shown_where_they_hold_bodies():
 
 def test_planes_are_shown_where_bodies_were_and_where_they_have_come_to():
     """A sphere that flew 50 m along a floor is still above it, and so is its start."""
-    extents, floor = Extents(), np.array([[0.0, 0.0, 1.0, 0.0]])
-    reached = []
+    floor = np.array([[0.0, 0.0, 1.0, 0.0]])
+    boxes, reached = [], []
     for x in (0.0, 50.0):
         position = np.array([[x, 0.0, 1.0], [np.nan] * 3])  # the last row is no body
-        extents.add(SimpleNamespace(position=position, motion=np.full((2, 4), 0.5)))
-        reached.append(planes_view(floor, extents)["points"][:, 0])
+        boxes.append(extent(SimpleNamespace(position=position, motion=np.full((2, 4), 0.5))))
+        reached.append(planes_view(floor, boxes)["points"][:, 0])
     assert reached[0].max() < 50.0 < reached[1].max()
     assert reached[1].min() <= reached[0].min() < 0.0
+
+
+def test_planes_look_the_same_after_a_state_is_loaded():
+    """They depend on the start and the present, not on when somebody looked."""
+    thrown = sphere([0.0, 0.0, 1.0]) | {"velocity": [9.0, 0.0, 5.0]}
+    watched, resumed = (build([thrown], planes=[FLOOR]) for _ in range(2))
+    run(watched, 0.3, lambda _: watched.walls())
+    resumed.load(watched.save())
+    assert np.array_equal(resumed.walls()["points"], watched.walls()["points"])
 
 
 def test_steps_are_long_while_nothing_can_touch():
