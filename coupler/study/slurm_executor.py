@@ -25,6 +25,7 @@ PROGRAMS = ("sbatch", "squeue", "scancel")
 POLL = 1.0  # s between two looks at the queue
 LATE = 15.0  # s until a file of another host is seen here
 MARGIN = 60  # s before the limit of a job in which its run is asked to end, with a snapshot
+ANSWER = 30.0  # s within which a program of SLURM must answer
 OUTAGE = 600.0  # s without an answer of SLURM until runs count as lost
 SCRIPT = """#!/bin/bash
 # A run of quintet sweep. All its processes are on this node.
@@ -76,6 +77,12 @@ class SlurmExecutor(Executor):
                 f"--engine slurm needs the programs of SLURM; {', '.join(lacking)} not found. Run "
                 "it on a host that submits jobs, or leave --engine out."
             )
+        reply = _ask_for_queue()
+        if reply.returncode:
+            raise SceneError(
+                f"--engine slurm: squeue failed: {reply.stderr.strip()}. Check that the controller "
+                "of SLURM runs and is reached from here, or leave --engine out."
+            )
         self._jobs, self._options = jobs, options
         self._waiting: list[tuple[SlurmRun, int]] = []  # with how often they were begun
         self._queued: list[Queued] = []
@@ -119,7 +126,7 @@ class SlurmExecutor(Executor):
 
     def _queue(self) -> Queue | None:
         """Jobs of this user; None where SLURM does not answer."""
-        reply = _call("squeue", "--noheader", f"--user={os.getuid()}", "--format=%i %T %j")
+        reply = _ask_for_queue()
         if reply.returncode == 0:
             self._heard = time.monotonic()
             jobs = [line.split(maxsplit=2) for line in reply.stdout.splitlines()]
@@ -217,5 +224,15 @@ def job_name(files: JobFiles) -> str:
     return f"quintet-{place}-{files.name}"
 
 
+def _ask_for_queue() -> "subprocess.CompletedProcess[str]":
+    """Ask for number, state and name of this user's jobs."""
+    return _call("squeue", "--noheader", f"--user={os.getuid()}", "--format=%i %T %j")
+
+
 def _call(*command: str, script: str = "") -> "subprocess.CompletedProcess[str]":
-    return subprocess.run(command, input=script, capture_output=True, text=True)
+    """Run a program of SLURM; one that does not answer counts as failed."""
+    try:
+        return subprocess.run(command, input=script, capture_output=True, text=True, timeout=ANSWER)
+    except subprocess.TimeoutExpired:
+        cause = f"no answer within {ANSWER:.0f} s"
+        return subprocess.CompletedProcess(command, 1, "", cause)

@@ -97,10 +97,10 @@ def _run_all(
         print_summary(summary)
         if options.run and not stop():
             _run_wanted(child, summary["wanted"], folder)
-    if draw(summary, folder / PICTURE):
-        print(f"drawn in {folder / PICTURE}")
     write_whole(folder / NAME, json.dumps(summary, indent=2))
     wanted.write(summary)
+    if draw(summary, folder / PICTURE):
+        print(f"drawn in {folder / PICTURE}")
     return status_of(summary, len(refinements))
 
 

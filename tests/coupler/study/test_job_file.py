@@ -1,6 +1,7 @@
 """A run of a sweep can be done from its file, by a batch system or a workflow."""
 
 import json
+import os
 import re
 import subprocess
 import sys
@@ -8,6 +9,7 @@ import sys
 import pytest
 from spring_scene import command, found_by, write
 
+from quintet.coupler.study import slurm_executor
 from quintet.coupler.study.job_file import JobFiles, cores_of, main, read_end, read_request
 
 STEP = "components.spring.step"
@@ -76,6 +78,26 @@ def test_wrong_input_is_told(written, capsys, monkeypatch):
     assert "needs FOLDER and HASH; found 1 arguments" in capsys.readouterr().err
     assert main([str(path.parent / "all"), "0000"]) == 2
     assert "it must be a run of a sweep; it cannot be read" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("squeue", "cause"),
+    [
+        ("echo Unable to contact slurm controller >&2; exit 1", "Unable to contact"),
+        ("exec sleep 60", "no answer within 0 s"),
+    ],
+)
+def test_a_batch_system_that_does_not_answer_is_told_at_once(
+    tmp_path, capsys, monkeypatch, squeue, cause
+):
+    for program in ("sbatch", "squeue", "scancel"):
+        (tmp_path / program).write_text(f"#!/bin/sh\n{squeue}\n")
+        (tmp_path / program).chmod(0o755)
+    monkeypatch.setenv("PATH", f"{tmp_path}{os.pathsep}{os.environ['PATH']}")
+    monkeypatch.setattr(slurm_executor, "ANSWER", 0.2)
+    assert command("sweep", write(tmp_path), *OVER, "--engine", "slurm") == 2
+    told = capsys.readouterr().err
+    assert f"--engine slurm: squeue failed: {cause}" in told and "Check that the controller" in told
 
 
 @pytest.mark.full
