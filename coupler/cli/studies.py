@@ -17,6 +17,8 @@ ERROR = "recommend the cheapest setting of this relative error, as in 0.05"
 RUN = "with --error: run the recommended setting if it is an extrapolated one"
 STUDY_ALL = "the quick refinements of all scenes that come with quintet; goes on where it was ended"
 MINUTES = "with --all: start no run that would end later (default: 60)"
+STABILITY_ALL = "the limits of all scenes that come with quintet; goes on where it was ended"
+LIMITS_README = "with --all: put the table at <!-- stability --> in this file"
 README = "with --all: put the table between <!-- study --> and <!-- studied --> of this file"
 ALL = "scan all scenes that come with quintet and have scans"
 OVER = "a key and its values, as in components.plate.thickness=0.002,0.004; may be repeated"
@@ -57,8 +59,10 @@ def add_commands(command: Command) -> None:
     study.add_argument("--minutes", type=float, metavar="M", help=MINUTES)
     study.add_argument("--readme", type=Path, metavar="FILE", help=README)
     stability = command("stability", series, "find the stability limits of a scene")
-    add_scene(stability)
+    add_scene(stability, nargs="?")
     add_report(stability, "runs/SCENE-stability")
+    stability.add_argument("--all", action="store_true", help=STABILITY_ALL)
+    stability.add_argument("--readme", type=Path, metavar="FILE", help=LIMITS_README)
     scan = command("scan", series, "check whether wrong results of absurd settings are reported")
     add_scene(scan, nargs="?")
     scan.add_argument("--all", action="store_true", help=ALL)

@@ -1,14 +1,10 @@
-"""The table of all studies for a README, between two markers."""
+"""The table of all studies for a README."""
 
 from collections.abc import Iterator, Sequence
-from pathlib import Path
 from typing import Any
 
-from quintet.coupler.files.disk import write_whole
 from quintet.coupler.report.work_precision import three_digits
-from quintet.interfaces.errors import SceneError
 
-BEGIN, END = "<!-- study -->", "<!-- studied -->"
 HEADS = (
     "study", "refinement", "refines", "largest relative error", "order", "processor time",
     "memory", "measured",
@@ -55,35 +51,3 @@ def _order(kind: Row | None, name: str) -> str:
 
 def _time(seconds: float) -> str:
     return f"{three_digits(seconds)} s" if seconds < 100.0 else f"{seconds / 60.0:.1f} min"
-
-
-def _parts(path: Path) -> tuple[list[str], list[str], list[str]]:
-    """Lines of a file up to the first marker, between both, and from the second one."""
-    try:
-        lines = path.read_text(encoding="utf-8").split("\n")
-    except (OSError, UnicodeDecodeError) as error:
-        raise SceneError(f"--readme {path}: it cannot be read ({error}). Name another.") from error
-    counts = lines.count(BEGIN), lines.count(END)
-    if counts != (1, 1) or lines.index(BEGIN) > lines.index(END):
-        raise SceneError(
-            f"--readme {path}: it must have the lines {BEGIN} and {END} once, in this order; "
-            f"found {counts[0]} and {counts[1]}. Add them where the table shall stand."
-        )
-    first, last = lines.index(BEGIN) + 1, lines.index(END)
-    return lines[:first], lines[first:last], lines[last:]
-
-
-def require_markers(path: Path) -> None:
-    """Refuse a file that has not one place for the table."""
-    _parts(path)
-
-
-def put_between(path: Path, table: str) -> None:
-    """Put a table between the markers of a file; all around it stays as it is."""
-    before, _, after = _parts(path)
-    write_whole(path, "\n".join([*before, table, *after]))
-
-
-def between(path: Path) -> str:
-    """Read the table between the markers of a file."""
-    return "\n".join(_parts(path)[1])

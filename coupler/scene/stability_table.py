@@ -82,10 +82,18 @@ class Against:
         Its path.
     values : of the parameter
         For each of which the limit is found.
+    along : of its paths
+        Other paths that change with it: for each a list of values, one for each of `values`.
     """
 
     parameter: str
     values: tuple[Number, ...]
+    along: dict[str, tuple[Any, ...]] = pydantic.Field(default_factory=dict)
+
+    def settings(self, value: float) -> dict[str, Any]:
+        """Settings at one of the values, by dotted path."""
+        number = self.values.index(value)
+        return {self.parameter: value, **{path: each[number] for path, each in self.along.items()}}
 
 
 @parameters
@@ -153,6 +161,8 @@ class LimitTable:
     def _rules(self) -> list[tuple[bool, str]]:
         listed = isinstance(self.predicted, tuple)
         values = self.against.values if self.against else ()
+        along = self.against.along if self.against else {}
+        wrong_along = [path for path, each in along.items() if len(each) != len(values)]
         count = len(self.predicted) if isinstance(self.predicted, tuple) else 0
         return [
             (self.from_ == self.to, f"from and to must differ; both are {self.to}."),
@@ -163,6 +173,11 @@ class LimitTable:
             (not self.parameter, "parameter must name a path or more; found none."),
             (self.predicted is not None and not self.source, "predicted needs a source."),
             (self.against is not None and not values, "against.values must not be empty."),
+            (
+                bool(wrong_along),
+                f"against.along must have as many values as against.values, {len(values)}, for "
+                f"each path; {', '.join(wrong_along)} has other numbers of them.",
+            ),
             (
                 listed and count != len(values),
                 "predicted must be one number, or one for each of against.values; found "
@@ -197,11 +212,11 @@ class Limit:
         if isinstance(table.parameter, str):
             varied = {table.parameter: value}
         if table.against and other is not None:
-            varied[table.against.parameter] = other
+            varied |= table.against.settings(other)
         return {**output, "end": self.end, **table.settings, **varied}
 
     def others(self) -> tuple[float | None, ...]:
-        """Values of the second parameter, or one Ntable."""
+        """Values of the second parameter, or None alone."""
         return self.table.against.values if self.table.against else (None,)
 
     def predicted(self, number: int) -> float | None:

@@ -6,190 +6,147 @@ Where only expectations fail a scene is degraded, not unstable; that limit is lo
 
 import argparse
 import json
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from rich.console import Console
-from rich.table import Table
-
 from quintet.coupler.files.disk import write_whole
 from quintet.coupler.files.json_file import JsonFile
+from quintet.coupler.report import marked_place
 from quintet.coupler.report.show import console
-from quintet.coupler.report.work_precision import three_digits
+from quintet.coupler.report.stability_map import PICTURE, draw_maps
+from quintet.coupler.report.stability_tables import markdown, print_limits
 from quintet.coupler.run import results
-from quintet.coupler.run.folder import begin_series, discard_former
+from quintet.coupler.run.folder import begin_series, discard_former, share
 from quintet.coupler.run.signals import StopRequest
-from quintet.coupler.scene.read import load_variants
+from quintet.coupler.scene.read import library, load_variants, parse
 from quintet.coupler.scene.stability_table import Limit
 from quintet.coupler.scene.varied_tables import folder_name
-from quintet.coupler.study.bisection import bisect, middle
-from quintet.coupler.study.child_run import FOREVER, ChildRun
-from quintet.coupler.study.invariants import Verdict, judge
+from quintet.coupler.study.child_run import ChildRun
+from quintet.coupler.study.stability_search import Search, find_limit, summary
 from quintet.interfaces.errors import SceneError
 
 NAME = "stability.json"
-SLOWEST = 20.0  # times the first run of a limit, and MARGIN: a run that takes longer has stalled
-MARGIN = 60.0  # s
-NUMBERS = ("predicted", "found", "ratio", "degraded")  # of a limit, in the table
+KEYS = ("scene", "limits")  # of the file for programs
 Found = dict[str, Any]
 
 
-class Interrupted(Exception):
-    """The search was interrupted by a signal."""
+@dataclass(frozen=True, slots=True)
+class Searches:
+    """Searches for the limits of scenes, with the options of the command line."""
 
+    options: argparse.Namespace
+    stop: StopRequest
 
-@dataclass(slots=True)
-class Search:
-    """Search for one stability limit: runs and verdicts by the value of its parameter."""
+    def find(self, scene: str, limits: list[Limit], folder: Path) -> list[Found]:
+        """Find the limits of a scene in a folder; the last may be incomplete after an interrupt."""
+        summaries: list[Found] = []
+        for limit in limits:
+            for number, other in enumerate(limit.others()):
+                place = folder / limit.folder
+                place = place if other is None else place / folder_name(f"{other:.6g}")
+                search = Search(limit, other, self._child(scene, limit), place, self._keeps())
+                is_complete = find_limit(search)
+                summaries.append(summary(search, limit.predicted(number), is_complete))
+                if not is_complete:
+                    return summaries
+        return summaries
 
-    limit: Limit
-    other: float | None  # value of the second parameter
-    child: ChildRun
-    folder: Path
-    verdicts: dict[float, Verdict] = field(default_factory=dict)
-    time_limit: float = FOREVER  # s, of a run
+    def _child(self, scene: str, limit: Limit) -> ChildRun:
+        options = self.options
+        transport = options.transport or limit.table.transport
+        asked = (scene, options.preset, options.settings, options.swap, transport)
+        return ChildRun(*asked, self.stop, force=True)
 
-    def __call__(self, value: float) -> Verdict:
-        """Run with a value, once; return the verdict."""
-        if value not in self.verdicts:
-            folder = self.folder / f"{value:.6g}"
-            run = self.child.run(self.limit.settings(value, self.other), folder, self.time_limit)
-            if run["status"] == "interrupted" or self.child.stop():
-                raise Interrupted
-            if self.time_limit == FOREVER:
-                self.time_limit = MARGIN + SLOWEST * run.get("timing", {}).get("wall", 0.0)
-            verdict = self.verdicts[value] = judge(self.limit.table, run, folder)
-            reason = f" ({verdict.broke}: {verdict.how})" if verdict.broke else ""
-            print(f"{self.limit.name} = {value:.6g}: {verdict.state}{reason}", flush=True)
-        return self.verdicts[value]
-
-    def boundary(self, *accepted: str) -> tuple[float, float] | None:
-        """Bisect between the accepted states and the others."""
-        limit = self.limit.table
-        known = sorted(self.verdicts, reverse=limit.from_ > limit.to)
-        return bisect(known, lambda v: self(v).state in accepted, limit.log, limit.accuracy)
+    def _keeps(self) -> bool:
+        return not self.options.force
 
 
 def run_stability(options: argparse.Namespace) -> int:
-    """Find every limit of the scene; print them, and write them as JSON."""
+    """Find every limit of the scene, or of all; print them, and write them as JSON."""
+    if options.all == (options.scene is not None):
+        raise SceneError("stability needs a scene or --all. Give one of them.")
+    if options.all:
+        return _run_all(options)
+    if options.readme:
+        raise SceneError("--readme is for --all. Add --all, or remove it.")
     asked = (options.scene, options.preset, options.settings, options.swap, options.transport)
     scene, variants = load_variants(*asked)
-    wanted = JsonFile(options.json, ("scene", "limits"))
+    wanted = JsonFile(options.json, KEYS)
     if not variants.stability:
         raise SceneError(
             f"{scene.path.name}: there is no limit to be found. Add a [[stability]] for each."
         )
-    name = scene.file.name
-    with begin_series("stability", name, (NAME,), options.out, options.force) as place:
+    name, files = scene.file.name, (NAME, PICTURE)
+    folder = options.out or Path("runs") / f"{name}-stability"
+    with begin_series("stability", name, files, folder, options.force, keep=True) as place:
         discard_former(place.path)
-        return _find_all(options, name, variants.stability, place.path, wanted)
+        stop = StopRequest()
+        with stop.listening():
+            limits = Searches(options, stop).find(options.scene, variants.stability, place.path)
+        _show(_write(name, limits, place.path))
+        wanted.write({"scene": name, "limits": limits, "machine": results.machine()})
+    return results.INTERRUPTED if stop() else _status(limits)
 
 
-def _find_all(
-    options: argparse.Namespace, scene: str, searched: list[Limit], folder: Path, wanted: JsonFile
-) -> int:
-    """Find every limit in a folder; return the exit status."""
-    stop, limits, interrupted = StopRequest(), [], False
+def _run_all(options: argparse.Namespace) -> int:
+    """Find the limits of all scenes that come with quintet; what was found before is kept."""
+    refused = {"--preset": options.preset, "--set": options.settings, "--swap": options.swap}
+    if wrong := [option for option, value in refused.items() if value]:
+        raise SceneError(
+            f"stability --all takes no {', '.join(wrong)}. Remove it, or name a scene."
+        )
+    wanted = JsonFile(options.json, KEYS)
+    if options.readme:
+        marked_place.LIMITS.check(options.readme)
+    before = json.loads(options.json.read_text("utf-8") or "[]") if _is_there(options.json) else []
+    content: dict[str, Found] = {entry["scene"]: entry for entry in before}
+    # Every scene is checked before anything starts.
+    scenes = {name: load_variants(name)[1].stability for name in _cheapest_first()}
+    content = {name: content[name] for name in scenes if name in content}
+    folder, stop = share("stability", "all", (NAME,), options.out), StopRequest()
     with stop.listening():
-        for limit in searched:
-            for number, other in enumerate(limit.others()):
-                if not interrupted:
-                    place = folder / limit.folder
-                    place = place if other is None else place / folder_name(f"{other:.6g}")
-                    child = ChildRun.of(options, stop, limit.table.transport)
-                    search = Search(limit, other, child, place)
-                    interrupted = not find_limit(search)
-                    limits.append(summary(search, limit.predicted(number)))
+        for name, limits in scenes.items():
+            (folder / name).mkdir(exist_ok=True)
+            summaries = Searches(options, stop).find(name, limits, folder / name)
+            if stop():
+                break
+            content[name] = _write(name, summaries, folder / name)
+            _show(content[name])
+            ordered = [content[scene] for scene in sorted(content)]
+            wanted.write(ordered)
+            write_whole(folder / NAME, json.dumps(ordered, indent=2))
+            if options.readme:
+                marked_place.LIMITS.put(options.readme, "\n".join(markdown(ordered)))
+    if stop():
+        return results.INTERRUPTED
+    return _status([limit for scene in content.values() for limit in scene["limits"]])
+
+
+def _is_there(path: Path | None) -> bool:
+    return path is not None and path.is_file()
+
+
+def _cheapest_first() -> list[str]:
+    """Scenes that come with quintet and have limits, by the time that they take."""
+    tables = {name: parse(path) for name, path in library().items()}
+    minutes = {n: table.get("minutes", 0.0) for n, table in tables.items() if "stability" in table}
+    return sorted(minutes, key=lambda name: (minutes[name], name))
+
+
+def _write(scene: str, limits: list[Found], folder: Path) -> Found:
+    """Write the limits of a scene and the maps of those in two parameters; return the content."""
     content = {"scene": scene, "limits": limits, "machine": results.machine()}
     write_whole(folder / NAME, json.dumps(content, indent=2))
-    wanted.write(content)
-    print_limits(limits, console())
-    if interrupted:
-        return results.INTERRUPTED
+    if drawn := draw_maps(scene, limits, folder / PICTURE):
+        print(f"drawn in {drawn}")
+    return content
+
+
+def _show(content: Found) -> None:
+    print_limits(content["limits"], console())
+
+
+def _status(limits: list[Found]) -> int:
+    """Exit status: 0 where every limit was found."""
     return results.DONE if all(limit["found"] is not None for limit in limits) else results.UNMET
-
-
-def find_limit(search: Search) -> bool:
-    """Search for one limit; return whether the search was completed."""
-    try:
-        for value in (search.limit.table.from_, search.limit.table.to):
-            search(value)
-        search.boundary("stable", "degraded")
-        if any(verdict.state == "degraded" for verdict in search.verdicts.values()):
-            search.boundary("stable")
-    except Interrupted:
-        return False
-    return True
-
-
-def summary(search: Search, predicted: float | None) -> Found:
-    """Summarize a limit from the runs that were made."""
-    limit, keys = search.limit, search.limit.table
-    edges = {
-        "unstable": _known_boundary(search, "stable", "degraded"),
-        "degraded": _known_boundary(search, "stable"),
-    }
-    state = next((state for state, edge in edges.items() if edge), None)
-    edge = edges[state] if state else None
-    boundary = middle(*edge, keys.log) if edge else None
-    verdict = search.verdicts.get(edge[1] if edge else keys.from_, Verdict("stable"))
-    degraded = edges["degraded"] if state == "unstable" else None
-    was_degraded = degraded is not None and search.verdicts[degraded[1]].state == "degraded"
-    runs = [{"value": value, **asdict(each)} for value, each in sorted(search.verdicts.items())]
-    return {
-        "name": limit.name,
-        "parameter": keys.parameter if isinstance(keys.parameter, str) else list(keys.parameter),
-        "against": {keys.against.parameter: search.other} if keys.against else None,
-        "predicted": predicted,
-        "found": boundary,
-        "ratio": boundary / predicted if boundary is not None and predicted else None,
-        "holds": edge[0] if edge else None,
-        "breaks": edge[1] if edge else None,
-        "state": state,
-        "broke": verdict.broke or None,
-        "how": verdict.how or None,
-        "degraded": middle(*degraded, keys.log) if degraded and was_degraded else None,
-        "range": [keys.from_, keys.to],
-        "source": keys.source,
-        "runs": runs,
-    }
-
-
-def _known_boundary(search: Search, *accepted: str) -> tuple[float, float] | None:
-    """Return the last accepted value and the first that is not, of those that were run."""
-    limit = search.limit.table
-    known = sorted(search.verdicts, reverse=limit.from_ > limit.to)
-    return bisect(known, lambda v: search.verdicts[v].state in accepted, limit.log, float("inf"))
-
-
-def print_limits(limits: list[Found], screen: Console) -> None:
-    """Print a line of numbers for each limit, then how each was found."""
-    columns = ["limit", "against", "predicted", "found", "ratio", "degraded", "then"]
-    if all(limit["degraded"] is None for limit in limits):
-        columns.remove("degraded")
-    table = Table(box=None, pad_edge=False)
-    for head in columns:
-        right = head in NUMBERS
-        table.add_column(head, justify="right" if right else "left", overflow="fold")
-    for limit in limits:
-        cells = {key: three_digits(limit[key]) for key in columns if key in NUMBERS}
-        cells |= {"limit": limit["name"], "against": _against(limit), "then": limit["state"] or "-"}
-        table.add_row(*(cells[head] for head in columns))
-    screen.print(table)
-    for limit in limits:
-        place = f" at {against}" if (against := _against(limit)) else ""
-        screen.print(f"{limit['name']}{place}: {_how(limit)}")
-
-
-def _against(limit: Found) -> str:
-    return ", ".join(f"{k} = {three_digits(v)}" for k, v in (limit["against"] or {}).items())
-
-
-def _how(limit: Found) -> str:
-    if limit["found"] is not None:
-        return f"{limit['broke']}: {limit['how']}"
-    first, last = limit["range"]
-    if limit["broke"]:
-        return f"at {first:g} already: {limit['broke']}: {limit['how']}"
-    return f"holds from {first:g} to {last:g}"

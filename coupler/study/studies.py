@@ -14,7 +14,8 @@ from typing import Any
 
 from quintet.coupler.files.disk import write_whole
 from quintet.coupler.files.json_file import JsonFile
-from quintet.coupler.report.studies_table import put_between, require_markers, table_of
+from quintet.coupler.report import marked_place
+from quintet.coupler.report.studies_table import table_of
 from quintet.coupler.run import results
 from quintet.coupler.run.folder import share
 from quintet.coupler.run.signals import StopRequest
@@ -40,7 +41,7 @@ def run_all(options: argparse.Namespace) -> int:
     _refuse_single(options)
     wanted = JsonFile(options.json, ("scene", "rows"))
     if options.readme:
-        require_markers(options.readme)
+        marked_place.STUDIES.check(options.readme)
     before = read_studies(options.json)
     folder = share("studies", "all", (NAME, JOURNAL), options.out)
     minutes = MINUTES if options.minutes is None else options.minutes
@@ -54,7 +55,7 @@ def run_all(options: argparse.Namespace) -> int:
     write_whole(folder / NAME, json.dumps(studies, indent=2))
     wanted.write(studies)
     if options.readme:
-        put_between(options.readme, table_of(studies))
+        marked_place.STUDIES.put(options.readme, table_of(studies))
     return _status(planned, stop())
 
 

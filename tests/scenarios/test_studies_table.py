@@ -3,7 +3,8 @@
 import json
 from pathlib import Path
 
-from quintet.coupler.report.studies_table import between, table_of
+from quintet.coupler.report.marked_place import STUDIES as PLACE
+from quintet.coupler.report.studies_table import table_of
 from quintet.coupler.scene.read import library, parse
 
 FOLDER = Path(__file__).resolve().parents[2] / "scenarios"
@@ -11,7 +12,7 @@ STUDIES = json.loads((FOLDER / "studies.json").read_text())
 
 
 def test_the_table_is_what_was_measured():
-    assert between(FOLDER / "README.md") == table_of(STUDIES)
+    assert PLACE.read(FOLDER / "README.md") == table_of(STUDIES)
 
 
 def test_all_refinements_of_all_scenes_are_in_it_as_they_are_now():

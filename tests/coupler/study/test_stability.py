@@ -2,11 +2,17 @@
 
 import csv
 import json
+from functools import partialmethod
+from io import StringIO
 
 import pytest
+from rich.console import Console
 from spring_scene import command, found_by, write
 
+from quintet.coupler.report.stability_tables import markdown, print_limits
+from quintet.coupler.scene.read import load_variants
 from quintet.coupler.scene.stability_table import LimitTable
+from quintet.coupler.study import stability
 from quintet.coupler.study.bisection import bisect
 from quintet.coupler.study.invariants import energies, judge
 from quintet.interfaces.errors import SceneError
@@ -48,6 +54,73 @@ def test_a_limit_is_found_for_each_value_of_a_second_parameter(tmp_path):
         assert limit["against"] == {"components.spring.mass": mass}
         assert limit["predicted"] == exact and limit["broke"] == "bounds"
         assert limit["holds"] < exact < limit["breaks"]
+
+
+def test_other_paths_change_along_with_the_second_parameter(tmp_path):
+    rest = "from = 0.15\nto = 0.25\naccuracy = 0.5\nend = 12.0\n"
+    rest += 'against = { parameter = "components.spring.mass", values = [1.0, 4.0], '
+    rest += 'along = { "components.spring.stiffness" = [100.0, 400.0] } }\n'
+    status, found = found_by("stability", write(tmp_path, limits(STEP + rest + INSIDE)))
+    assert status == 0
+    for limit in found["limits"]:  # k/m stays, and so does the limit
+        assert limit["holds"] < 0.2 < limit["breaks"]
+
+
+def test_nothing_is_run_twice_and_a_map_is_drawn(tmp_path, capsys):
+    rest = "from = 0.15\nto = 0.45\naccuracy = 0.5\nend = 12.0\n"
+    rest += 'against = { parameter = "components.spring.mass", values = [1.0, 4.0] }\n'
+    path = write(tmp_path, limits(STEP + rest + INSIDE))
+    first, runs = found_by("stability", path), tmp_path / "all" / "components.spring.step"
+    times = {run: run.stat().st_mtime_ns for run in runs.glob("*/*/results.json")}
+    assert len(times) >= 4 and (tmp_path / "all" / "stability.png").stat().st_size > 10_000
+    assert found_by("stability", path) == first
+    assert times == {run: run.stat().st_mtime_ns for run in times}
+    path.write_text(path.read_text().replace("low = -1.5", "low = -1.4"))
+    found_by("stability", path)  # other bounds: other verdicts
+    again = {run: run.stat().st_mtime_ns for run in times}
+    assert all(again[run] > times[run] for run in times)
+
+
+def test_a_search_that_was_ended_says_so():
+    limit = {"name": "step", "against": None, "found": 0.2, "broke": "energy", "how": "it rose"}
+    limit |= {"predicted": None, "ratio": None, "degraded": None, "state": "unstable"}
+    for complete, words in ((True, "step: energy: it rose"), (False, "ended after 2 runs")):
+        screen = Console(file=StringIO(), width=200)
+        print_limits([limit | {"complete": complete, "runs": [{}, {}]}], screen)
+        assert words in screen.file.getvalue()
+
+
+def test_limits_of_all_scenes_make_a_table(tmp_path, monkeypatch, capsys):
+    ends = STEP + "from = 0.15\nto = 0.25\npredicted = 0.2\nsource = '2/ω'\nend = 12.0\n"
+    scenes = {}
+    for name in ("soft", "firm"):
+        (tmp_path / name).mkdir()
+        scenes[name] = write(tmp_path / name, limits(ends + INSIDE + "accuracy = 0.5\n"))
+    (tmp_path / "none").mkdir()
+    scenes["none"] = write(tmp_path / "none")  # has no limits
+    monkeypatch.setattr(stability, "library", lambda: scenes)
+    monkeypatch.setattr(stability, "load_variants", lambda name: load_variants(str(scenes[name])))
+    readme, kept = tmp_path / "README.md", tmp_path / "kept.json"
+    readme.write_text("before\n<!-- stability -->\nold\n<!-- end of stability -->\nafter\n")
+    monkeypatch.setattr(
+        stability.Searches, "find", partialmethod(by_name, stability.Searches.find, scenes)
+    )
+    words = ("--all", "--json", kept, "--readme", readme, "--out", tmp_path / "out")
+    assert command("stability", *words) == 0
+    content = json.loads(kept.read_text())
+    assert [entry["scene"] for entry in content] == ["firm", "soft"]
+    lines = readme.read_text().splitlines()
+    assert lines[0] == "before" and lines[-1] == "after" and "old" not in lines
+    assert lines[2:-2] == list(markdown(content))
+    assert command("stability", *words) == 0 and json.loads(kept.read_text()) == content
+    assert command("stability", "--all", "--set", "end=1.0") == 2
+    assert "stability --all takes no --set" in capsys.readouterr().err
+    assert command("stability") == 2 and "a scene or --all" in capsys.readouterr().err
+
+
+def by_name(searches, find, scenes, name, *rest):
+    """Find limits of a scene of our own, that has no file in the library."""
+    return find(searches, str(scenes[name]), *rest)
 
 
 def test_several_paths_are_scaled_together_and_a_range_may_fall(tmp_path):
@@ -184,6 +257,14 @@ WRONG = {
     "against": (
         STEP + RANGE + 'against = { parameter = "components.spring.mas", values = [1.0] }',
         "0: components.spring.mas is not known. Did you mean mass?",
+    ),
+    "along": (
+        STEP
+        + RANGE
+        + 'against = { parameter = "components.spring.mass", values = [1.0], '
+        + 'along = { "components.spring.stiffness" = [1.0, 2.0] } }',
+        "0: against.along must have as many values as against.values, 1, for each path; "
+        "components.spring.stiffness has other numbers of them.",
     ),
     "energy": (
         STEP + RANGE + "energy = { factor = 0.5 }",

@@ -11,7 +11,7 @@ from collections import Counter
 import pytest
 from spring_scene import command, write
 
-from quintet.coupler.report.studies_table import between
+from quintet.coupler.report.marked_place import STUDIES
 from quintet.coupler.study import studies, studies_plan
 
 REFINEMENT = """
@@ -111,22 +111,22 @@ def test_the_time_is_kept_and_the_same_command_goes_on(scenes, tmp_path, capsys,
     assert "2 refinements take more than a minute" in said
     assert "6 quick runs, about 47 min more, do not fit into the time: the same command" in said
     assert "| `quintet study soft` | 0.02 | time step | - | - | - | - | not measured" in (
-        between(readme)
+        STUDIES.read(readme)
     )
     assert all_studies(scenes, out, "--minutes", 15) == 130  # 200 + 200 + 400 s
     first = events(out, "done")
     assert len(first) == 3
     assert all_studies(scenes, out) == 0
     assert len(events(out, "done")) == 6 and set(events(out, "started").values()) == {1}
-    lines = between(readme).splitlines()
+    lines = STUDIES.read(readme).splitlines()
     assert len(lines) == 2 + 8 and sum("not measured" in line for line in lines) == 2
     assert readme.read_text().startswith("before\n<!-- study -->\n")
     assert readme.read_text().endswith("<!-- studied -->\nafter\n")
 
     # In a new folder, as after a change of the source code, what was measured is not lost.
-    table = between(readme)
+    table = STUDIES.read(readme)
     assert all_studies(scenes, tmp_path / "other", "--minutes", 0) == 130
-    assert between(readme) == table
+    assert STUDIES.read(readme) == table
 
 
 def step_of(scene):

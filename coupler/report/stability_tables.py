@@ -1,0 +1,66 @@
+"""Limits of stability: a table for the screen, and one of all scenes for a README."""
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+from rich.console import Console
+from rich.table import Table
+
+from quintet.coupler.report.work_precision import three_digits
+
+NUMBERS = ("predicted", "found", "ratio", "degraded")  # of a limit, in the table
+HEADS = ("scene", "limit of", "at", "predicted", "by", "found", "ratio", "what breaks first")
+Found = dict[str, Any]
+
+
+def print_limits(limits: list[Found], screen: Console) -> None:
+    """Print a line of numbers for each limit, then how each was found."""
+    columns = ["limit", "against", "predicted", "found", "ratio", "degraded", "then"]
+    if all(limit["degraded"] is None for limit in limits):
+        columns.remove("degraded")
+    table = Table(box=None, pad_edge=False)
+    for head in columns:
+        right = head in NUMBERS
+        table.add_column(head, justify="right" if right else "left", overflow="fold")
+    for limit in limits:
+        cells = {key: three_digits(limit[key]) for key in columns if key in NUMBERS}
+        cells |= {"limit": limit["name"], "against": _against(limit), "then": limit["state"] or "-"}
+        table.add_row(*(cells[head] for head in columns))
+    screen.print(table)
+    for limit in limits:
+        place = f" at {against}" if (against := _against(limit)) else ""
+        screen.print(f"{limit['name']}{place}: {_how(limit)}")
+
+
+def _against(limit: Found) -> str:
+    return ", ".join(f"{k} = {three_digits(v)}" for k, v in (limit["against"] or {}).items())
+
+
+def _how(limit: Found) -> str:
+    if not limit["complete"]:
+        return f"the search was ended after {len(limit['runs'])} runs; the same command goes on"
+    if limit["found"] is not None:
+        return f"{limit['broke']}: {limit['how']}"
+    first, last = limit["range"]
+    if limit["broke"]:
+        return f"at {first:g} already: {limit['broke']}: {limit['how']}"
+    return f"holds from {first:g} to {last:g}"
+
+
+def markdown(scenes: Sequence[Found]) -> Iterator[str]:
+    """Lines of one table of all scenes; numbers in SI units."""
+    yield f"| {' | '.join(HEADS)} |"
+    yield "|---|---|---|---:|---|---:|---:|---|"
+    for scene in scenes:
+        for number, limit in enumerate(scene["limits"]):
+            cells = [
+                f"`{scene['scene']}`" if number == 0 else "",
+                limit["name"],
+                _against(limit),
+                three_digits(limit["predicted"]),
+                limit["source"],
+                three_digits(limit["found"]),
+                three_digits(limit["ratio"]),
+                limit["broke"] or "-",
+            ]
+            yield f"| {' | '.join(cell.replace('|', ' ') for cell in cells)} |"
