@@ -55,7 +55,7 @@ def add_commands(command: Command) -> None:
     drawing.add_argument("--out", type=Path, metavar="FILE", help=OUT)
     drawing.add_argument("--force", action="store_true", help=REPLACE)
 
-    text = "write one page about a run: expectations, pictures, balances, time, how to repeat it"
+    text = "write one page about a run or a series of runs: results, pictures, balances, time"
     reporting = command("report", report, text)
     reporting.add_argument("folder", type=Path, metavar="DIR")
     reporting.add_argument("--out", type=Path, metavar="FILE", help=PAGE)
@@ -104,17 +104,23 @@ def trace(options: argparse.Namespace) -> int:
 
 
 def report(options: argparse.Namespace) -> int:
-    """Write the page of a run."""
+    """Write the page of a run, or of a series of runs."""
     # Start-up: only this command needs it.
-    from quintet.coupler.files.run_files import REPORT
+    from quintet.coupler.files.run_files import REPORT, read_marker
     from quintet.coupler.report.free_place import free_place
     from quintet.coupler.report.html_report import write_report
+    from quintet.coupler.report.series_report import CAPTIONS, write_series_report
     from quintet.interfaces.libraries import require
 
     for library in ("matplotlib", "jinja2"):
         require(library, "a report")
     place = free_place(options.folder / REPORT, options.out, [".html"], options.force)
-    print(f"written: {os.path.relpath(write_report(options.folder, place))}")
+    marker = read_marker(options.folder)
+    if marker and marker.kind in CAPTIONS:
+        written = write_series_report(marker.kind, options.folder, place)
+    else:
+        written = write_report(options.folder, place)
+    print(f"written: {os.path.relpath(written)}")
     return 0
 
 

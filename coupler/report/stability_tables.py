@@ -13,23 +13,34 @@ HEADS = ("scene", "limit of", "at", "predicted", "by", "found", "ratio", "what b
 Found = dict[str, Any]
 
 
-def print_limits(limits: list[Found], screen: Console) -> None:
+def print_limits(limits: Sequence[Found], screen: Console) -> None:
     """Print a line of numbers for each limit, then how each was found."""
+    screen.print(table(limits))
+    for sentence in sentences(limits):
+        screen.print(sentence)
+
+
+def table(limits: Sequence[Found]) -> Table:
+    """One row of numbers for each limit."""
     columns = ["limit", "against", "predicted", "found", "ratio", "degraded", "then"]
     if all(limit["degraded"] is None for limit in limits):
         columns.remove("degraded")
-    table = Table(box=None, pad_edge=False)
+    screen_table = Table(box=None, pad_edge=False)
     for head in columns:
         right = head in NUMBERS
-        table.add_column(head, justify="right" if right else "left", overflow="fold")
+        screen_table.add_column(head, justify="right" if right else "left", overflow="fold")
     for limit in limits:
         cells = {key: three_digits(limit[key]) for key in columns if key in NUMBERS}
         cells |= {"limit": limit["name"], "against": _against(limit), "then": limit["state"] or "-"}
-        table.add_row(*(cells[head] for head in columns))
-    screen.print(table)
+        screen_table.add_row(*(cells[head] for head in columns))
+    return screen_table
+
+
+def sentences(limits: Sequence[Found]) -> Iterator[str]:
+    """Say how each limit was found."""
     for limit in limits:
         place = f" at {against}" if (against := _against(limit)) else ""
-        screen.print(f"{limit['name']}{place}: {_how(limit)}")
+        yield f"{limit['name']}{place}: {_how(limit)}"
 
 
 def _against(limit: Found) -> str:

@@ -14,7 +14,7 @@ from PIL import Image
 from started import write_scene
 
 from quintet.coupler.cli import main
-from quintet.coupler.report import html_report
+from quintet.coupler.report import page as report_page
 from quintet.coupler.report import report_figures as figures
 from quintet.coupler.report.recorded import Series
 from quintet.coupler.report.run_tables import references
@@ -154,11 +154,11 @@ def test_large_pictures_are_compressed(springs, tmp_path, monkeypatch):
     shutil.copytree(springs, folder)
     noise = np.random.default_rng(1).integers(0, 255, (1500, 2500, 3), dtype=np.uint8)
     Image.fromarray(noise).save(folder / "scene.png")
-    assert (folder / "scene.png").stat().st_size > html_report.OF_PICTURES
+    assert (folder / "scene.png").stat().st_size > report_page.OF_PICTURES
     page = _page(folder, "--force")
-    assert (folder / "report.html").stat().st_size < html_report.LARGEST
+    assert (folder / "report.html").stat().st_size < report_page.LARGEST
     assert page.images[0].startswith("data:image/jpeg")
-    monkeypatch.setattr(html_report, "LARGEST", 1000)
+    monkeypatch.setattr(report_page, "LARGEST", 1000)
     assert _call("report", folder) == 2
 
 

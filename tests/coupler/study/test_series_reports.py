@@ -1,0 +1,60 @@
+"""The page of a series has its tables and pictures, and needs nothing else."""
+
+import base64
+import io
+import re
+
+import pytest
+from PIL import Image
+from spring_scene import command, write
+
+STEP = "components.spring.step"
+STUDY = "".join(
+    f'[[study]]\nlabel = "{step}"\nsettings = {{ "{STEP}" = {step} }}\nsize = "{STEP}"\n'
+    for step in (0.02, 0.01)
+)
+LIMIT = f'''
+[[stability]]
+parameter = "{STEP}"
+from = 0.15
+to = 0.25
+accuracy = 0.5
+end = 12.0
+bounds = [{{ component = "spring", field = "motion.position", low = -1.5, high = 1.5 }}]
+against = {{ parameter = "components.spring.mass", values = [1.0, 2.0] }}
+'''
+STIFFNESS = """
+[ensemble.stiffness]
+keys = ["components.spring.stiffness"]
+uniform = [95.0, 105.0]
+source = "a spring as bought"
+"""
+CASES = {
+    "study": ((), ["2 of 2 runs done", "The cheapest refinement", "Observed orders", "CPU [s]"]),
+    "sweep": (("--over", f"{STEP}=0.02,0.01"), ["2 of 2 runs done", STEP, "done, met"]),
+    "ensemble": (("--runs", "3"), ["3 of 3 runs done", "What is uncertain", "stiffness"]),
+    "stability": ((), ["limits found", "Limits", "bounds"]),
+}
+
+
+@pytest.mark.parametrize("kind", CASES)
+def test_a_series_has_a_page(tmp_path, capsys, kind):
+    arguments, words = CASES[kind]
+    out = tmp_path / "all"
+    path = write(tmp_path, STUDY + LIMIT + STIFFNESS, within=0.5)
+    command(kind, path, "--out", out, *arguments)
+    assert command("report", out) == 0, capsys.readouterr().err
+    page = (out / "report.html").read_text()
+    assert not [word for word in words if word not in page]
+    images = re.findall(r'src="data:image/png;base64,([^"]+)"', page)
+    assert len(images) == 1
+    assert Image.open(io.BytesIO(base64.b64decode(images[0]))).size[0] > 400
+    assert "<script" not in page and "http" not in page and "None" not in page
+
+
+def test_a_series_that_has_not_ended_says_so(tmp_path, capsys):
+    out = tmp_path / "all"
+    command("study", write(tmp_path, STUDY), "--out", out)
+    (out / "study.json").unlink()
+    assert command("report", out) == 2
+    assert "this study has no study.json yet. Go on with it" in capsys.readouterr().err
