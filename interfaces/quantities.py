@@ -18,7 +18,8 @@ from quintet.interfaces.params import shown
 Table = dict[str, Any]
 UnitOf = Callable[[Key, Mapping[str, Any]], str]  # of a key, in a table of its class
 
-NUMBER = r"[+-]?(?:\d[\d_]{0,39}(?:\.\d{0,40})?|\.\d{1,40})(?:[eE][+-]?\d{1,3})?"
+# Digits may be in groups, as in TOML: 1_000, but neither 2_ nor 1__0.
+NUMBER = r"[+-]?(?:\d(?:_?\d){0,39}(?:\.\d{0,40})?|\.\d{1,40})(?:[eE][+-]?\d{1,3})?"
 # What the unit itself may be is left to its reader.
 QUANTITY = re.compile(rf"\s*({NUMBER})\s*((?:1\s*/\s*)?[A-Za-zµμΩÅ°%Δ][^\n\"]{{0,60}})")
 PATTERN = rf"^\s*{NUMBER}\s*(1\s*/\s*)?[A-Za-zµμΩÅ°%Δ].*$"  # of the same, in a JSON schema

@@ -1,5 +1,8 @@
 """Texts with units become numbers, with the bits of the decimal number."""
 
+import itertools
+import re
+
 import pytest
 
 from quintet.interfaces.params import Number, Positive, Vector, parameters
@@ -119,6 +122,40 @@ def test_a_wrong_unit_is_refused_with_the_one_that_is_needed(text, unit):
     assert str(refused.value).startswith("components.water.spacing")
     assert WRONG[text, unit] in str(refused.value)
     assert repr(text) in str(refused.value)
+
+
+GROUPS = ("1_000 mm", "1_0.5 m", "2_ kg", "2_kg", "1__0 m", "_1 m", "1_.5 m", "2.e1 m")
+
+
+@pytest.mark.parametrize("text", GROUPS)
+def test_digits_are_in_groups_as_in_toml_or_the_text_is_no_quantity(text):
+    digits = text.removesuffix("kg").removesuffix("mm").removesuffix("m").strip()
+    if not has_quantities(text):
+        assert "_" in digits and not re.fullmatch(r"\d(_?\d)*", digits)
+        table = {"spacing": text}
+        assert in_si(Fluid, table, "water") == (table, [])  # refused as no number
+    else:
+        metres = float(digits) * (1e-3 if "mm" in text else 1.0)
+        assert number_in(text, "m", "spacing") == pytest.approx(metres, rel=1e-15)
+
+
+def test_every_text_that_looks_like_a_quantity_has_a_number_or_a_clear_mistake():
+    parts = (part for n in range(1, 7) for part in itertools.product("1_.E", repeat=n))
+    texts = [f"{''.join(part)} m" for part in parts]
+    quantities = [text for text in texts if has_quantities(text)]
+    outcomes = {text: _number_or_mistake(text) for text in quantities}
+    assert sum(isinstance(number, float) for number in outcomes.values()) > 50
+    for text, outcome in outcomes.items():
+        # An E without an exponent is read as a unit.
+        expected = float(text[:-2]) if isinstance(outcome, float) else f"unit of '{text}' is not"
+        assert outcome == expected if isinstance(outcome, float) else expected in outcome
+
+
+def _number_or_mistake(text):
+    try:
+        return number_in(text, "m", "key")
+    except ValueError as error:
+        return str(error)
 
 
 def test_numbers_are_converted_wherever_a_key_has_them():

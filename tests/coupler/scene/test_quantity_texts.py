@@ -139,3 +139,11 @@ def test_the_schema_takes_texts_where_a_key_has_a_unit(toy):
     for wrong in ("ms 2", "2", "auto "):
         assert list(validator.iter_errors({**table, "window": wrong}))
     assert library()
+
+
+def test_a_number_that_ends_in_an_underscore_is_refused(capsys):
+    with pytest.raises(SystemExit) as ended:
+        main(["run", "two_springs", "--set", "window='2_kg'"])
+    assert ended.value.code == 2
+    said = capsys.readouterr().err
+    assert "scene.window should be a valid number or 'auto'; found '2_kg'. Correct it." in said
