@@ -21,7 +21,7 @@ FLOORS = {
         {"libraries"},
         {"units", "params", "recordings"},
         {"component", "keys"},
-        {"ports", "manifest", "rotation", "sums", "faces", "quantities"},
+        {"ports", "manifest", "rotation", "sums", "faces", "quantities", "materials"},
         {"lines"},
         {"serving"},
     ],

@@ -17,6 +17,7 @@ from quintet.components.shared.geometry.shape_keys import (
     PolygonKeys,
     RoundKeys,
 )
+from quintet.interfaces.materials.filling import MaterialName
 from quintet.interfaces.params import (
     NotNegative,
     Positive,
@@ -41,6 +42,8 @@ class Material:
 
     Parameters
     ----------
+    material
+        Name of a material, whose constants stand for those that are not given.
     youngs_modulus : Pa
         E.
     poissons_ratio : 1
@@ -59,6 +62,13 @@ class Material:
         "poisson": "poissons_ratio",
         "rolling": "rolling_friction",
     }
+    MATERIAL: ClassVar = {
+        key: key
+        for key in (
+            "youngs_modulus", "poissons_ratio", "restitution", "friction", "rolling_friction"
+        )
+    }  # fmt: skip
+    material: MaterialName | None = None
     youngs_modulus: Positive
     poissons_ratio: Poisson
     restitution: Restitution
@@ -165,7 +175,8 @@ class DemBodiesParams:
     bodies
         Rigid bodies, in the order in which ports count them.
     materials
-        Materials of the bodies and planes, by name.
+        Materials of the bodies and planes, by name; each a table, or the name of a material of the
+        library or of the scene.
     planes
         Fixed half-spaces that hold them.
     dimensions

@@ -2,10 +2,11 @@
 
 import math
 from collections.abc import Collection, Mapping
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
 
+from quintet.interfaces.materials.filling import MaterialName
 from quintet.interfaces.params import NotNegative, Positive, Vector, parameters
 
 NO_SLIP = ("isothermal", "adiabatic")  # walls that hold the gas
@@ -14,10 +15,12 @@ NO_SLIP_KEYS = {"velocity", "accommodation"}  # what both may be given
 
 @parameters
 class Gas:
-    """A perfect gas.
+    """A perfect gas; air if nothing is given.
 
     Parameters
     ----------
+    material
+        Name of a material, whose constants stand for those that are not given.
     gamma : 1
         Ratio of the specific heats.
     gas_constant : J/(kg K)
@@ -33,6 +36,13 @@ class Gas:
         c_p μ/λ.
     """
 
+    MATERIAL: ClassVar = {
+        key: key
+        for key in (
+            "gamma", "gas_constant", "viscosity", "reference_temperature", "sutherland", "prandtl"
+        )
+    }  # fmt: skip
+    material: MaterialName | None = None
     gamma: Annotated[float, Field(gt=1, allow_inf_nan=False)] = 1.4
     gas_constant: Positive = 287.05
     viscosity: Positive = 1.78e-5

@@ -28,7 +28,7 @@ class MeshlessGasParams:
     Parameters
     ----------
     gas
-        Which gas.
+        Which gas: a table, or the name of a material.
     dimensions
         In 2 the gas lies in the plane of x and z, and is 1 m deep.
     axisymmetric

@@ -14,6 +14,7 @@ from quintet.components.sph_fluid.setup.mass import check_mass, mass_notes, part
 from quintet.components.sph_fluid.setup.shapes import FluidRegion
 from quintet.components.sph_fluid.setup.standing_wave import StandingWave
 from quintet.components.sph_fluid.setup.viscosity import Viscosity
+from quintet.interfaces.materials.filling import MaterialName
 from quintet.interfaces.params import Fraction, NotNegative, Positive, Vector, parameters
 
 
@@ -28,6 +29,8 @@ class SphFluidParams:
 
     Parameters
     ----------
+    material
+        Name of a liquid, whose density and kinematic viscosity stand for those that are not given.
     spacing : m
         Between particles.
     sound_speed : m/s
@@ -103,6 +106,8 @@ class SphFluidParams:
         "motion_gauge": "gauges.motion_gauge",
     }
 
+    MATERIAL: ClassVar = {"density": "density", "viscosity.kinematic": "kinematic_viscosity"}
+    material: MaterialName | None = None
     spacing: Positive
     sound_speed: Positive
     fluid: tuple[FluidRegion, ...] = ()

@@ -1,4 +1,4 @@
-"""Commands that start no solver: list, check, describe, schema."""
+"""Commands that start no solver: list, check, describe, materials, schema."""
 
 import argparse
 from pathlib import Path
@@ -27,6 +27,9 @@ def add_commands(command: Command) -> None:
     keys.add_argument("subject", nargs="*", metavar="SUBJECT", help=SUBJECT)
     keys.add_argument("--json", action="store_true", help="print JSON")
     keys.add_argument("--write", nargs="+", type=Path, default=[], metavar="FILE", help=WRITE)
+    named = command("materials", materials, "list materials by name, with constants and sources")
+    named.add_argument("name", nargs="?", default="", help="print the constants of this material")
+    named.add_argument("--json", action="store_true", help="print JSON")
     editors = command("schema", schema, "print a JSON schema of scene files, for editors")
     editors.add_argument(
         "scene", nargs="?", help="scene whose kinds module:Class the schema includes"
@@ -66,6 +69,15 @@ def describe(options: argparse.Namespace) -> int:
     from quintet.coupler.reference.describe import run_describe
 
     return run_describe(options)
+
+
+def materials(options: argparse.Namespace) -> int:
+    """List materials, or print the constants of one."""
+    # Start-up: only this command needs it.
+    from quintet.coupler.reference.materials import print_materials
+
+    print_materials(options.name, options.json)
+    return 0
 
 
 def schema(options: argparse.Namespace) -> int:

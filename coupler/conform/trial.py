@@ -19,6 +19,8 @@ from quintet.interfaces.component import (
 )
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.manifest import ConformCase, Manifest
+from quintet.interfaces.materials.filling import fill
+from quintet.interfaces.materials.library import library
 from quintet.interfaces.params import read
 from quintet.interfaces.quantities import in_si
 
@@ -46,7 +48,9 @@ class Trial:
         self.read_only = True  # whether inputs come as they do over a line
         table = case.params(folder) if callable(case.params) else case.params
         where = f"conform {manifest.kind}, {case.name}"
-        table, mistakes = in_si(manifest.params, table, where)
+        table, mistakes = fill(manifest.params, table, where, library())
+        if not mistakes:
+            table, mistakes = in_si(manifest.params, table, where)
         if mistakes:
             raise SceneError(mistakes)
         self.params, mistakes = read(manifest.params, table, where, folder)

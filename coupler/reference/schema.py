@@ -20,7 +20,7 @@ from quintet.coupler.scene.quantity_texts import OF_OTHERS
 from quintet.coupler.scene.scene import ComponentKeys, SceneFile
 from quintet.coupler.scene.tables import SceneTables
 from quintet.interfaces.errors import SceneError
-from quintet.interfaces.keys import about, keys
+from quintet.interfaces.keys import Key, about, keys
 from quintet.interfaces.manifest import known_kinds
 from quintet.interfaces.quantities import PATTERN, is_in_si
 
@@ -44,8 +44,14 @@ class Described(GenerateJsonSchema):
             entry["description"] = (key.meaning + unit).strip()
             if key.unit:
                 entry["unit"] = key.unit
+            if key.inner is not None and hasattr(key.inner, "MATERIAL"):
+                table["properties"][key.name] = _or_name(entry, key)
             if key.numeric and (is_in_si(key.unit) or key.unit in OF_OTHERS):
                 table["properties"][key.name] = _or_quantity(entry)
+        if constants := getattr(params, "MATERIAL", None):  # which a material may have
+            table["required"] = [
+                name for name in table.get("required", ()) if name not in constants
+            ]
         return table
 
 
@@ -89,6 +95,18 @@ def scene_schema(more_kinds: Iterable[str] = ()) -> Schema:
         "definitions": definitions,
     }
     return dict(_plain(_used(whole)))
+
+
+def _or_name(schema: Schema, key: Key) -> Schema:
+    """Accept the name of a material in the place of a table that takes constants."""
+    if key.place == "names":
+        inner = schema["additionalProperties"]
+        return {**schema, "additionalProperties": {"anyOf": [inner, {"type": "string"}]}}
+    if "anyOf" in schema:
+        return schema
+    others = {name: part for name, part in schema.items() if name in ("default", "description")}
+    table = {name: part for name, part in schema.items() if name not in others}
+    return {**others, "anyOf": [table, {"type": "string"}]}
 
 
 def _or_quantity(schema: Any) -> Any:

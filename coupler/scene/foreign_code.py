@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from quintet.interfaces.component import Port
-from quintet.interfaces.manifest import Manifest, known_kinds
+from quintet.interfaces.manifest import Manifest, find, known_kinds
 from quintet.interfaces.params import parameters
 from quintet.interfaces.serving.process import STARTER
 
@@ -43,6 +43,19 @@ def is_trusted(kind: str, folder: Path) -> bool:
     library = Path(str(files("quintet.scenarios"))).resolve()
     ours = library in file.parents and "." not in module and file.is_file()
     return ours and _origin(module) in (None, str(file))
+
+
+def trusted_params(kind: Any, folder: Path, imports: bool) -> type | None:
+    """Parameter class of a kind; None of one that is not to be imported, or cannot be.
+
+    `imports` tells whether code of the scene's own may be imported.
+    """
+    if not isinstance(kind, str) or not (imports or is_trusted(kind, folder)):
+        return None
+    try:
+        return find(kind).params
+    except (Exception, SystemExit):  # of any kind: reported as the component is read
+        return None
 
 
 def trusted_tables(tables: Any, folder: Path) -> dict[str, Any]:

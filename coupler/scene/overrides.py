@@ -56,7 +56,8 @@ def put(table: dict[str, Any], path: str, value: Any) -> list[str]:
                 return [f"{place}: must be a number below {len(at)}; found {head!r}. Correct it."]
             at = at[int(head)]
         elif isinstance(at, dict) and (head in at or _may_be_made(heads[: number + 1])):
-            at = at.setdefault(head, {})
+            at[head] = _material(at.get(head, {}), heads[: number + 1])
+            at = at[head]
         else:
             return [unknown(place, head, at if isinstance(at, dict) else ())]
     if isinstance(at, list) and is_index(last, at):
@@ -66,6 +67,12 @@ def put(table: dict[str, Any], path: str, value: Any) -> list[str]:
         return [f"{path} cannot be set: {'.'.join(heads)} is not a table."]
     at[last] = value
     return []
+
+
+def _material(value: Any, heads: list[str]) -> Any:
+    """Write the name of a component's material as a table, so that its constants can be set."""
+    names_one = heads[-1] == "material" or heads[-2:-1] == ["materials"]
+    return {"material": value} if names_one and isinstance(value, str) else value
 
 
 def is_index(text: str, among: list[Any]) -> bool:

@@ -7,12 +7,11 @@ from typing import Any
 
 from quintet.coupler.coupling.links import known_links, maker
 from quintet.coupler.measures.expectation import Expectation
-from quintet.coupler.scene.foreign_code import is_trusted
+from quintet.coupler.scene.foreign_code import trusted_params
 from quintet.coupler.scene.scene import GroupSettings, SceneFile
 from quintet.coupler.scene.stability_table import LimitTable
 from quintet.coupler.scene.tables import SceneTables
 from quintet.interfaces.keys import Key, keys
-from quintet.interfaces.manifest import find
 from quintet.interfaces.quantities import has_quantities, in_si
 
 Table = dict[str, Any]
@@ -100,13 +99,7 @@ class _Conversion:
         }
 
     def _params(self, kind: Any) -> type | None:
-        """Parameter class of a kind; None of one that is not to be imported, or cannot be."""
-        if not isinstance(kind, str) or not (self.imports or is_trusted(kind, self.folder)):
-            return None
-        try:
-            return find(kind).params
-        except (Exception, SystemExit):  # of any kind: reported as the component is read
-            return None
+        return trusted_params(kind, self.folder, self.imports)
 
     def _unit(self, key: Key, table: Mapping[str, Any]) -> str:
         """Unit of a key: its own, that of its expectation, or that of the parameter it is about."""

@@ -21,6 +21,7 @@ from quintet.coupler.scene.groups import (
     unknown_outputs,
 )
 from quintet.coupler.scene.link_tables import read_links
+from quintet.coupler.scene.material_names import with_materials
 from quintet.coupler.scene.needs import refused_times
 from quintet.coupler.scene.overrides import put_preset, put_set
 from quintet.coupler.scene.quantity_texts import scene_in_si
@@ -155,9 +156,11 @@ def _check(
     tables = tables if imports else trusted_tables(tables, path.parent)
     look_in(import_folders(path, tables))
     announce(kinds_of(tables), path.parent)
-    table, wrong_units = scene_in_si(table, path.parent, imports)
-    if wrong_units:
-        raise SceneError([f"{path.name}: {mistake}" for mistake in wrong_units[:MOST_TOLD]])
+    table, wrong = with_materials(table, path.parent, imports)
+    if not wrong:
+        table, wrong = scene_in_si(table, path.parent, imports)
+    if wrong:
+        raise SceneError([f"{path.name}: {mistake}" for mistake in wrong[:MOST_TOLD]])
     keys = {key: value for key, value in table.items() if key not in TABLES}
     file, mistakes = read(SceneFile, keys, "scene")
     mistakes = [_also_tables(mistake) for mistake in mistakes]

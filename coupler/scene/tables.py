@@ -24,6 +24,9 @@ class SceneTables:
         At least one; with them stand the keys of their kinds.
     links
         What joins their ports; with them stand the keys of their kinds.
+    materials
+        Constants by the names of materials, or a file beside the scene that has them; components
+        name them like those of the library.
     groups
         Components with a scheme and windows of their own.
     expect
@@ -46,6 +49,7 @@ class SceneTables:
 
     components: dict[str, ComponentKeys]
     links: tuple[LinkKeys, ...] = ()
+    materials: str | dict[str, dict[str, Any]] = field(default_factory=dict)
     groups: dict[str, GroupSettings] = field(default_factory=dict)
     expect: tuple[Expectation, ...] = ()
     presets: dict[str, dict[str, Any]] = field(default_factory=dict)

@@ -1,14 +1,22 @@
 """What a scene says about a material that yields, is shocked, and breaks."""
 
 import math
-from typing import Annotated
+from typing import Annotated, Any, ClassVar
 
 from pydantic import AfterValidator, Field
 from pydantic_core import PydanticCustomError
 
-from quintet.components.shared.materials.library import LIBRARY, Table
+from quintet.interfaces.materials.filling import MaterialName as UnfilledName
+from quintet.interfaces.materials.filling import fitting
+from quintet.interfaces.materials.library import constants, library
 from quintet.interfaces.params import Fraction, NotNegative, Number, Positive, parameters
 
+# A material of the library has some of these, by the names of the keys.
+CONSTANTS = (
+    "density", "youngs_modulus", "shear_modulus", "poissons_ratio", "johnson_cook",
+    "mie_gruneisen", "spall_stress", "failure_strain", "damage", "specific_heat",
+    "taylor_quinney", "temperature",
+)  # fmt: skip
 # Incompressible ones would need an infinite bulk modulus.
 Poisson = Annotated[float, Field(ge=0, lt=0.5, allow_inf_nan=False)]
 
@@ -121,6 +129,8 @@ class Material:
 
     Parameters
     ----------
+    material
+        Name of a material, whose constants stand for those that are not given.
     density : kg/m3
         ρ₀, unstressed.
     youngs_modulus : Pa
@@ -147,6 +157,11 @@ class Material:
         At the start.
     """
 
+    MATERIAL: ClassVar = {key: key for key in CONSTANTS}
+    INSTEAD_OF: ClassVar = {
+        "youngs_modulus": "shear_modulus", "shear_modulus": "youngs_modulus"
+    }  # fmt: skip
+    material: UnfilledName | None = None
     density: Positive
     youngs_modulus: Positive | None = None
     shear_modulus: Positive | None = None
@@ -214,10 +229,9 @@ class Material:
 
 def _material_name(name: str) -> str:
     """Return the name of a material of the library."""
-    if name not in LIBRARY:
-        names = ", ".join(LIBRARY)
+    if name not in (names := fitting(Material, library())):
         raise PydanticCustomError(
-            "material", f"Input should be a material of the library ({names})"
+            "material", f"Input should be a material of the library ({', '.join(names)})"
         )
     return name
 
@@ -229,10 +243,10 @@ def material(described: "Material | str") -> Material:
     """Return a material that a scene describes, or names from the library."""
     if isinstance(described, Material):
         return described
-    return _from_table(LIBRARY[described])
+    return _from_table(constants(library()[described]))
 
 
-def _from_table(table: Table) -> Material:
+def _from_table(table: dict[str, Any]) -> Material:
     parts = {
         "johnson_cook": JohnsonCook,
         "mie_gruneisen": MieGruneisen,

@@ -10,7 +10,6 @@ from scipy.optimize import brentq
 
 from quintet.components.shared.materials import equation_of_state as eos
 from quintet.components.shared.materials import fracture, strength
-from quintet.components.shared.materials.library import LIBRARY
 from quintet.components.shared.materials.params import (
     JohnsonCook,
     JohnsonCookDamage,
@@ -20,6 +19,8 @@ from quintet.components.shared.materials.params import (
 )
 from quintet.components.shared.materials.solid import densest, solid
 from quintet.interfaces.params import parameters, read
+
+PLASTIC = ["42CrMo4", "Ti-6Al-4V", "aluminium", "copper", "steel"]
 
 
 # The laws are inlined into solvers' kernels; here each is called from Python.
@@ -185,7 +186,7 @@ def test_a_small_strain_gives_hookes_law():
     np.testing.assert_allclose(found, exact, rtol=1e-12, atol=1e-9)
 
 
-@pytest.mark.parametrize("name", sorted(set(LIBRARY)))
+@pytest.mark.parametrize("name", PLASTIC)
 @pytest.mark.parametrize("strain", [0.0, 1e-6, 0.3])
 @pytest.mark.parametrize("excess", [1.0001, 1.01, 3.0])
 @pytest.mark.parametrize("dt", [1e-9, 1e-6, 10.0])
