@@ -268,8 +268,12 @@ def initial_state(params: FePlateParams, built: Structure) -> State:
     size = len(model.corner) // blocks  # elements of a block
     for part, first, last in (*built.inner, *built.border):
         state.points[first:last, TEMPERATURE] = built.laws[part].temperature
-        corners = model.corner[first * size : last * size]
-        state.velocity[np.unique(corners)] = params.parts[part].velocity
+        nodes_here = np.unique(model.corner[first * size : last * size])
+        given, of_file = params.parts[part].velocity, built.mesh.velocity
+        if given is not None:
+            state.velocity[nodes_here] = given
+        elif of_file is not None:
+            state.velocity[nodes_here] = of_file[nodes_here]
     state.velocity[:] *= model.free
     state.mean_velocity[:] = state.velocity
     return state

@@ -1,4 +1,4 @@
-"""Meshes of 8-node solids from files, in any format that meshio reads.
+"""Meshes of 8-node solids from files: of LS-DYNA, or in any format that meshio reads.
 
 Nothing is imported unless a scene names a file.
 """
@@ -6,13 +6,14 @@ Nothing is imported unless a scene names a file.
 from collections import Counter
 from functools import cache
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from quintet.components.fe_plate.meshes.abaqus import require_readable
 from quintet.components.fe_plate.meshes.arrays import Array, Whole
 from quintet.components.fe_plate.meshes.coincidence import first_at_place, pieces
+from quintet.components.fe_plate.meshes.source import Source, as_source, of_parts
 from quintet.interfaces.errors import SceneError
 
 SOLID = "hexahedron"
@@ -26,10 +27,11 @@ class FileMesh(NamedTuple):
     sets: dict[str, Whole]  # nodes (k,) of each named set
     groups: dict[str, Whole]  # elements (k,) of each named set
     notes: tuple[str, ...]  # of what is left out
+    velocity: Array | None = None  # (n, 3) at the start, in units of the file
 
 
 @cache
-def read(file: str, coincident: str = "refuse") -> FileMesh:
+def read(file: str, coincident: str = "refuse", parts: tuple[int | str, ...] = ()) -> FileMesh:
     """Read the 8-node solids, their nodes, and the sets of both that the file names.
 
     Parameters
@@ -38,13 +40,13 @@ def read(file: str, coincident: str = "refuse") -> FileMesh:
     coincident
         Whether nodes of different elements at the same place are refused ("refuse"), joined
         ("join"), or left apart ("keep").
+    parts
+        Parts, or sets of elements, that are read; all if none are named.
     """
     name, source = Path(file).name, _parsed(file)
-    corner = _solids(name, source)
-    raw = np.asarray(source.points, np.float64)
-    points = np.zeros((len(raw), 3))
-    points[:, : raw.shape[1]] = raw
-    notes = _left_out(name, source, np.unique(corner))
+    source = of_parts(name, source, parts) if parts else _all_parts(name, source)
+    corner, points = _solids(name, source), source.points
+    notes = [*source.notes, *_left_out(name, source, np.unique(corner))]
     same = np.arange(len(points))
     if coincident != "keep":
         same = _same_places(name, points, corner, coincident)
@@ -59,14 +61,21 @@ def read(file: str, coincident: str = "refuse") -> FileMesh:
     for key, nodes in source.point_sets.items():
         members = np.unique(same[np.asarray(nodes, np.int64)])
         sets[key] = np.flatnonzero(np.isin(used, members))
-        if lost := len(members) - len(sets[key]):
+        if (lost := len(members) - len(sets[key])) and not parts:
             notes.append(f"mesh {name}: {lost} nodes of its set {key} belong to no solid.")
-    return FileMesh(points[used], corner, sets, _groups(name, source, notes), tuple(notes))
+    groups = _groups(name, source, notes)
+    velocity = None if source.velocity is None else source.velocity[used]
+    return FileMesh(points[used], corner, sets, groups, tuple(notes), velocity)
 
 
-def _parsed(file: str) -> Any:
-    """Read a file by meshio."""
+def _parsed(file: str) -> Source:
+    """Read a file of LS-DYNA, or another by meshio."""
     path = Path(file)
+    if path.suffix.lower() in (".k", ".key"):
+        # Scenes with other files do not import it.
+        from quintet.components.fe_plate.meshes.ls_dyna.deck import read_deck
+
+        return read_deck(path)
     try:
         # Scenes without mesh files do not need it, nor have it installed.
         import meshio
@@ -78,7 +87,7 @@ def _parsed(file: str) -> Any:
     if path.suffix == ".inp" and path.is_file():
         require_readable(path)
     try:
-        return meshio.read(file)
+        return as_source(meshio.read(file))
     except (Exception, SystemExit) as error:  # of any kind: each format has its own
         raise SceneError(
             f"file {path.name} must be a mesh that meshio reads; reading it found "
@@ -86,7 +95,21 @@ def _parsed(file: str) -> Any:
         ) from error
 
 
-def _solids(name: str, source: Any) -> Whole:
+def _all_parts(name: str, source: Source) -> Source:
+    """Return all that a file has; refuse elements that are not read."""
+    if source.foreign:
+        raise SceneError(
+            f"file {name} must have no other elements than solids, for they would be left out; "
+            f"found {_listed(Counter(source.foreign))}. Remove them, or choose parts of solids by "
+            "parts."
+        )
+    for block in source.cells:
+        if block.dim == 3:
+            source.check(np.arange(len(block.data)))
+    return source
+
+
+def _solids(name: str, source: Source) -> Whole:
     """Corners (e, 8) of all blocks of 8-node solids; other solids are refused."""
     kinds, others = Counter[str](), Counter[str]()
     for block in source.cells:
@@ -96,7 +119,7 @@ def _solids(name: str, source: Any) -> Whole:
     if not kinds[SOLID]:
         raise SceneError(
             f"file {name} must have elements of kind {SOLID}; found "
-            f"{_listed(kinds) or 'none'}. Mesh it with 8-node solids."
+            f"{_listed(+kinds) or 'none'}. Mesh it with 8-node solids."
         )
     if others:
         raise SceneError(
@@ -107,7 +130,7 @@ def _solids(name: str, source: Any) -> Whole:
     return np.concatenate(cells)
 
 
-def _left_out(name: str, source: Any, used: Whole) -> list[str]:
+def _left_out(name: str, source: Source, used: Whole) -> list[str]:
     """Notes of faces, edges and points beside the solids; shells and beams are refused."""
     marks, lost = Counter[str](), Counter[str]()
     for block in source.cells:
@@ -152,7 +175,7 @@ def _same_places(name: str, points: Array, corner: Whole, coincident: str) -> Wh
     return same
 
 
-def _groups(name: str, source: Any, notes: list[str]) -> dict[str, Whole]:
+def _groups(name: str, source: Source, notes: list[str]) -> dict[str, Whole]:
     """Solids of each named set of elements, counted through all blocks of solids."""
     groups = {}
     for key, blocks in source.cell_sets.items():

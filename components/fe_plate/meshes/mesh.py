@@ -40,6 +40,7 @@ class Mesh(NamedTuple):
     sets: dict[str, Whole]  # nodes of each named set, of files and of the scene
     groups: dict[str, Whole]  # elements of each named set of files
     notes: tuple[str, ...] = ()  # of meshes from files
+    velocity: Array | None = None  # (n, 3) m/s at the start, of files; None if none has any
 
 
 def mesh(parts: Sequence[MeshedPart], dimensions: int = 3, sets: Sequence[NodeSet] = ()) -> Mesh:
@@ -48,6 +49,7 @@ def mesh(parts: Sequence[MeshedPart], dimensions: int = 3, sets: Sequence[NodeSe
     named: dict[str, Whole] = {}
     groups: dict[str, Whole] = {}
     notes: list[str] = []
+    velocities: list[tuple[int, Array]] = []
     for part in parts:
         if dimensions == 2:
             node, corner = rectangle(part)
@@ -57,6 +59,8 @@ def mesh(parts: Sequence[MeshedPart], dimensions: int = 3, sets: Sequence[NodeSe
             loaded = part.placed()
             node, corner = loaded.node, loaded.corner
             notes += loaded.notes
+            if loaded.velocity is not None:
+                velocities.append((first, loaded.velocity))
             for name, rows in loaded.sets.items():
                 named[name] = np.append(named.get(name, rows[:0]), first + rows)
             for name, rows in loaded.groups.items():
@@ -78,7 +82,16 @@ def mesh(parts: Sequence[MeshedPart], dimensions: int = 3, sets: Sequence[NodeSe
                 "set, of the scene or of a mesh's file. Rename it."
             )
         named[node_set.name] = np.flatnonzero(inside(node, node_set))
-    return Mesh(node, corner, number, *outer, named, groups, tuple(notes))
+    velocity = _joined(velocities, len(node)) if velocities else None
+    return Mesh(node, corner, number, *outer, named, groups, tuple(notes), velocity)
+
+
+def _joined(velocities: list[tuple[int, Array]], nodes: int) -> Array:
+    """Velocities (n, 3) m/s of all nodes, from those of some parts and the first node of each."""
+    joined = np.zeros((nodes, 3))
+    for first, velocity in velocities:
+        joined[first : first + len(velocity)] = velocity
+    return joined
 
 
 def _require_apart(node: Array, corner: Whole, part: Whole, side: Whole) -> None:

@@ -20,7 +20,7 @@ from quintet.components.shared.geometry.shape_keys import (
 )
 from quintet.components.shared.geometry.shapes import Box, Cylinder, Mesh, Shape
 from quintet.components.shared.materials.params import Material, MaterialName, material
-from quintet.interfaces.params import Count, Vector, parameters
+from quintet.interfaces.params import Count, Positive, Vector, parameters
 
 Flags = NDArray[np.bool_]
 SMALL, LARGE = 1e-4, 5.0  # m: meshes beyond are asked whether their unit is right
@@ -43,8 +43,8 @@ class MeshedPart(BoxKeys, CylinderKeys, MeshKeys):
     radius : m
         Of a cylinder: a rounded square in the middle, and rings around it.
     file
-        A mesh beside the scene, in a format that meshio reads (Abaqus, Gmsh, Nastran, VTK, Exodus
-        ...); shells, beams and other solids in it are refused.
+        A mesh beside the scene: LS-DYNA keywords (.k, .key), or a format that meshio reads (Abaqus,
+        Gmsh, Nastran, VTK, Exodus ...); shells, beams and other solids in it are refused.
     scale : m
         What one unit of length in the file stands for; 1 if not given.
     elements : 1
@@ -57,6 +57,9 @@ class MeshedPart(BoxKeys, CylinderKeys, MeshKeys):
     coincident_nodes
         Nodes of different elements of a mesh at the same place: "refuse" them, "join" them to one,
         or "keep" them apart, as at a crack.
+    parts
+        Of a mesh: the parts that are read, by their numbers or titles in an LS-DYNA file, or by
+        names of sets of elements; all if none are given.
     """
 
     RENAMED: ClassVar = {
@@ -68,6 +71,7 @@ class MeshedPart(BoxKeys, CylinderKeys, MeshKeys):
     cutout: Cutout | None = None
     quarter: bool = False
     coincident_nodes: Literal["refuse", "join", "keep"] = "refuse"
+    parts: tuple[int | str, ...] = ()
 
     def __post_init__(self) -> None:
         shape = self.geometry
@@ -78,6 +82,11 @@ class MeshedPart(BoxKeys, CylinderKeys, MeshKeys):
             )
         if self.cutout is not None and not isinstance(shape, Box):
             raise ValueError(f"part: cutout is of a box; found a {self.shape}. Leave it out.")
+        if self.parts and not isinstance(shape, Mesh):
+            raise ValueError(
+                f"part: parts are of a mesh from a file; found {list(self.parts)} of a "
+                f"{self.shape}. Leave them out."
+            )
         if isinstance(shape, Box) and self.count == 0:
             raise ValueError("part: cutout must leave an element; it leaves none. Make it smaller.")
 
@@ -105,7 +114,7 @@ class MeshedPart(BoxKeys, CylinderKeys, MeshKeys):
         """Nodes where they are [m], and elements, which are checked; with notes of both."""
         shape = self.geometry
         assert isinstance(shape, Mesh)
-        loaded, name = read(shape.file, self.coincident_nodes), Path(shape.file).name
+        loaded, name = read(shape.file, self.coincident_nodes, self.parts), Path(shape.file).name
         node = shape.scale * loaded.node + shape.origin
         notes = [_size(name, node, len(loaded.corner), shape.scale), *loaded.notes]
         notes += require_sound(f"mesh {name}", node, loaded.corner)
@@ -179,11 +188,34 @@ class Part(MeshedPart):
     material
         Name of a material of the library, or its table.
     velocity : m/s
-        At the start.
+        At the start; without it, that of the nodes in an LS-DYNA file, or none.
+    time_scale : s
+        What one unit of time in an LS-DYNA file stands for, whose initial velocities are used.
     """
 
     material: MaterialName | Material
-    velocity: Vector = (0.0, 0.0, 0.0)
+    velocity: Vector | None = None
+    time_scale: Positive = 1.0
+
+    def placed(self) -> FileMesh:
+        """Nodes where they are [m], and elements, which are checked; with velocities [m/s]."""
+        loaded = MeshedPart.placed(self)
+        if loaded.velocity is None:
+            return loaded
+        name = f"mesh {Path(self.file or '').name}"
+        moving = int(loaded.velocity.any(axis=1).sum())
+        if self.velocity is not None:
+            note = (
+                f"{name}: initial velocities of {moving} nodes are not used, for the scene gives "
+                "the part's velocity."
+            )
+            return loaded._replace(velocity=None, notes=(*loaded.notes, note))
+        velocity = (self.scale or 1.0) / self.time_scale * loaded.velocity
+        fastest = float(np.linalg.norm(velocity, axis=1).max())
+        note = (
+            f"{name}: initial velocities of {moving} nodes are the file's, up to {fastest:.4g} m/s."
+        )
+        return loaded._replace(velocity=velocity, notes=(*loaded.notes, note))
 
     @property
     def expected_step(self) -> float:

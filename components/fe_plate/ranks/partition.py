@@ -157,11 +157,12 @@ def cut(
     face_row[faces] = np.arange(len(faces))
     side = np.where(mesh.side[faces] < 0, -1, row[mesh.side[faces]])
     pressed = [face_row[numbers] for numbers in built.pressed]
+    velocity = None if mesh.velocity is None else mesh.velocity[part.node]
     return built._replace(
         # Corners of elements stand in the model alone.
         mesh=Mesh(
             mesh.node[part.node], np.zeros((0, 8), np.int64), mesh.part[part.element], side,
-            mesh.owner[faces], {}, {},
+            mesh.owner[faces], {}, {}, (), velocity,
         ),
         model=model._replace(
             corner=target[: len(corner)],

@@ -1,0 +1,1 @@
+"""Meshes in LS-DYNA keyword files, which OpenRadioss reads as well."""

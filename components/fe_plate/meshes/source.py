@@ -1,0 +1,87 @@
+"""A mesh as it stands in a file, in the shape in which meshio returns one, with more beside."""
+
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from quintet.components.fe_plate.meshes.arrays import Array, Whole
+from quintet.interfaces.errors import SceneError
+from quintet.interfaces.params import unknown
+
+
+class Cells(NamedTuple):
+    """Elements of one kind."""
+
+    type: str
+    dim: int
+    data: Whole  # (e, c) corners
+
+
+def _accept(rows: Whole) -> None:
+    """Accept all solids."""
+
+
+class Source(NamedTuple):
+    """Points, cells and sets; of sets of cells the rows in each block of cells, or None."""
+
+    points: Array  # (p, 3)
+    cells: Sequence[Cells]
+    point_sets: dict[str, Whole]
+    cell_sets: dict[str, list[Whole | None]]
+    velocity: Array | None = None  # (p, 3) in units of the file
+    notes: tuple[str, ...] = ()
+    foreign: dict[str, int] = {}  # noqa: RUF012, never written; blocks of other elements, unread
+    check: Callable[[Whole], None] = _accept  # of solids by their rows; raises SceneError
+
+
+def as_source(mesh: Any) -> Source:
+    """Return what meshio has read."""
+    raw = np.asarray(mesh.points, np.float64)
+    points = np.zeros((len(raw), 3))
+    points[:, : raw.shape[1]] = raw
+    cells = [Cells(block.type, block.dim, np.asarray(block.data, np.int64)) for block in mesh.cells]
+    return Source(points, cells, dict(mesh.point_sets), dict(mesh.cell_sets))
+
+
+def of_parts(name: str, source: Source, parts: Sequence[int | str]) -> Source:
+    """Keep the cells of some named parts alone, solids and others; sets keep what is left.
+
+    Parameters
+    ----------
+    name
+        Of the file.
+    source
+    parts
+        Numbers of LS-DYNA parts, or names of sets of cells.
+    """
+    chosen = [np.zeros(len(block.data), bool) for block in source.cells]
+    for part in parts:
+        key = f"part {part}" if f"part {part}" in source.cell_sets else str(part)
+        if key not in source.cell_sets:
+            raise SceneError(unknown(f"file {name}: part {part}", str(part), source.cell_sets))
+        for flags, rows in zip(chosen, source.cell_sets[key], strict=True):
+            if rows is not None:
+                flags[rows] = True
+    for block, flags in zip(source.cells, chosen, strict=True):
+        if block.dim == 3:
+            source.check(np.flatnonzero(flags))
+    cells = [
+        block._replace(data=block.data[flags])
+        for block, flags in zip(source.cells, chosen, strict=True)
+    ]
+    sets: dict[str, list[Whole | None]] = {}
+    for key, blocks in source.cell_sets.items():
+        pairs = zip(blocks, chosen, strict=True)
+        sets[key] = [None if rows is None else _kept(rows, flags) for rows, flags in pairs]
+    whole = sum(len(block.data) for block in source.cells)
+    left = whole - sum(len(block.data) for block in cells)
+    note = f"mesh {name}: {left} elements of other parts are left out."
+    return source._replace(cells=cells, cell_sets=sets, notes=(*source.notes, note), foreign={})
+
+
+def _kept(rows: Whole, flags: np.ndarray) -> Whole:
+    """New numbers of those rows that are kept."""
+    numbers = np.cumsum(flags) - 1
+    rows = np.asarray(rows, np.int64)
+    return np.asarray(numbers[rows[flags[rows]]], np.int64)
