@@ -15,6 +15,7 @@ from quintet.coupler.cli import (
     reference,
     runs,
     scaling,
+    starting,
     studies,
 )
 from quintet.coupler.cli.options import BAD, Action
@@ -74,7 +75,8 @@ def parser() -> argparse.ArgumentParser:
         return added
 
     for group in (
-        reference, runs, pictures, debugging, launching, certificates, studies, kinds, scaling
+        reference, starting, runs, pictures, debugging, launching, certificates, studies, kinds,
+        scaling,
     ):  # fmt: skip
         group.add_commands(command)
     return top

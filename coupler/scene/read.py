@@ -156,11 +156,11 @@ def _check(
     tables = tables if imports else trusted_tables(tables, path.parent)
     look_in(import_folders(path, tables))
     announce(kinds_of(tables), path.parent)
-    table, wrong = with_materials(table, path.parent, imports)
-    if not wrong:
-        table, wrong = scene_in_si(table, path.parent, imports)
-    if wrong:
-        raise SceneError([f"{path.name}: {mistake}" for mistake in wrong[:MOST_TOLD]])
+    table, wrong_texts = with_materials(table, path.parent, imports)
+    if not wrong_texts:
+        table, wrong_texts = scene_in_si(table, path.parent, imports)
+    if wrong_texts:
+        raise SceneError([f"{path.name}: {mistake}" for mistake in wrong_texts[:MOST_TOLD]])
     keys = {key: value for key, value in table.items() if key not in TABLES}
     file, mistakes = read(SceneFile, keys, "scene")
     mistakes = [_also_tables(mistake) for mistake in mistakes]

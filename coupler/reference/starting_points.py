@@ -1,0 +1,124 @@
+"""``quintet new``: a small scene, component or link to begin with, written into a new folder.
+
+The files are the examples of the folders' texts, whose tests install and run them; names are
+replaced.
+"""
+
+import keyword
+import re
+from dataclasses import dataclass
+from importlib.resources import files
+from importlib.util import find_spec
+from pathlib import Path
+
+from quintet.coupler.coupling.links import known_links
+from quintet.coupler.scene.read import library
+from quintet.interfaces.errors import SceneError
+from quintet.interfaces.manifest import known_kinds
+from quintet.interfaces.params import shown
+
+FILE = re.compile(r"`([\w/]+\.(?:py|toml))`:\n\n```\w+\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+NAME = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*")
+LONGEST = 40  # characters of a name
+
+
+@dataclass(frozen=True, slots=True)
+class Template:
+    """Where the files of an example stand, and what is to be done with them."""
+
+    package: str  # whose README.md has them
+    name: str  # of the example, replaced by the new one
+    next: tuple[str, ...]  # commands to go on with; {name} and {folder} are filled in
+
+
+INSTALL = "pip install -e {folder}"
+TEMPLATES = {
+    "scene": Template("quintet.scenarios", "falling_ball", ("quintet run {folder}/scene.toml",)),
+    "component": Template(
+        "quintet.interfaces",
+        "mooring",
+        (INSTALL, "quintet conform {name}", "quintet run {folder}/scene.toml", "pytest {folder}"),
+    ),
+    "link": Template(
+        "quintet.coupler",
+        "mount",
+        (INSTALL, "quintet run {folder}/scene.toml", "pytest {folder}"),
+    ),
+}
+
+
+def write_new(what: str, name: str, folder: Path) -> list[Path]:
+    """Write the files of a starting point into a folder that is not there yet.
+
+    Parameters
+    ----------
+    what : {"scene", "component", "link"}
+    name : str
+        Of the scene, or of the package and the kind.
+    folder : Path
+        To be made.
+
+    Returns
+    -------
+    list of Path
+        The files.
+
+    Raises
+    ------
+    SceneError
+        The name may not be used, or the folder is there.
+    """
+    _check_name(what, name)
+    if folder.exists():
+        raise SceneError(
+            f"new {what}: the folder must not exist yet, nothing is overwritten; found "
+            f"{shown(str(folder))}. Choose another name, or --out DIR."
+        )
+    paths = []
+    for path, text in starting_point(what, name).items():
+        (folder / path).parent.mkdir(parents=True, exist_ok=True)
+        (folder / path).write_text(text, encoding="utf-8")
+        paths.append(folder / path)
+    return paths
+
+
+def starting_point(what: str, name: str) -> dict[str, str]:
+    """Texts of the files of a starting point by their paths, with a new name in them."""
+    template = TEMPLATES[what]
+    text = (files(template.package) / "README.md").read_text(encoding="utf-8")
+    return {
+        _renamed(path, template.name, name): _renamed(inside, template.name, name)
+        for path, inside in FILE.findall(text)
+    }
+
+
+def next_commands(what: str, name: str, folder: Path) -> list[str]:
+    """Commands to go on with."""
+    return [line.format(name=name, folder=folder) for line in TEMPLATES[what].next]
+
+
+def _renamed(text: str, old: str, new: str) -> str:
+    """Replace a name where it stands for the package or its classes, not in prose."""
+    not_prose = r"(?! lines?\b)"
+    text = re.sub(rf"(?<![A-Za-z]){old}(?![A-Za-z]){not_prose}", new, text)
+    return re.sub(rf"\b{_in_classes(old)}(?=[A-Z]|\b){not_prose}", _in_classes(new), text)
+
+
+def _in_classes(name: str) -> str:
+    return "".join(part.capitalize() for part in name.split("_"))
+
+
+def _check_name(what: str, name: str) -> None:
+    if not NAME.fullmatch(name) or len(name) > LONGEST or keyword.iskeyword(name):
+        raise SceneError(
+            f"new {what}: a name must be lower-case letters, digits and _, beginning with a "
+            f"letter, at most {LONGEST} characters, and no word of Python; found {shown(name)}. "
+            "Choose another one."
+        )
+    taken = {"scene": library, "component": known_kinds, "link": known_links}[what]()
+    if name in taken or (what != "scene" and find_spec(name) is not None):
+        known = f"a {what}" if name in taken else "a module of Python"
+        raise SceneError(
+            f"new {what}: the name must be free; found {name}, {known} that is installed. Choose "
+            "another one."
+        )

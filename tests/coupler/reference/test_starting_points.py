@@ -1,0 +1,95 @@
+"""What `quintet new` writes runs as it stands, and overwrites nothing."""
+
+import os
+import subprocess
+import sys
+import tomllib
+
+import pytest
+
+from quintet.coupler.cli import main
+from quintet.coupler.reference.starting_points import TEMPLATES, starting_point, write_new
+from quintet.coupler.report.show import results
+from quintet.interfaces.errors import SceneError
+
+
+@pytest.fixture
+def begun(tmp_path, monkeypatch):
+    """Write a starting point, and offer its entry points to the processes that this one starts."""
+    monkeypatch.chdir(tmp_path)
+
+    def begin(what, name):
+        with pytest.raises(SystemExit) as ended:
+            main(["new", what, name])
+        assert ended.value.code == 0
+        folder = tmp_path / name
+        if what != "scene":
+            project = tomllib.loads((folder / "pyproject.toml").read_text())["project"]
+            info = folder / f"{name}-{project['version']}.dist-info"
+            info.mkdir()
+            (info / "METADATA").write_text(f"Name: {name}\nVersion: {project['version']}\n")
+            ((group, points),) = project["entry-points"].items()
+            lines = [f"[{group}]", *(f"{key} = {value}" for key, value in points.items())]
+            (info / "entry_points.txt").write_text("\n".join(lines))
+            monkeypatch.setenv("PYTHONPATH", str(folder))
+        return folder
+
+    return begin
+
+
+def test_a_new_scene_meets_its_exact_solution(begun, capsys):
+    folder = begun("scene", "first_try")
+    assert "quintet run first_try/scene.toml" in capsys.readouterr().out
+    with pytest.raises(SystemExit) as ended:
+        main(["run", str(folder / "scene.toml"), "--out", str(folder / "run")])
+    assert ended.value.code == 0
+    expectations = results(folder / "run")["expect"]
+    assert [one["met"] for one in expectations] == [True]
+    assert results(folder / "run")["scene"] == "first_try"
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("what", "name"), [("component", "tether_line"), ("link", "rider")])
+def test_a_new_package_passes_its_own_tests(begun, what, name):
+    folder = begun(what, name)
+    command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", str(folder)]
+    ended = subprocess.run(command, cwd=folder, env=os.environ, capture_output=True, text=True)
+    assert ended.returncode == 0, ended.stdout + ended.stderr
+    assert f"{2 if what == 'component' else 1} passed" in ended.stdout
+
+
+@pytest.mark.parametrize("what", TEMPLATES)
+def test_the_name_of_the_example_is_gone(what):
+    old = TEMPLATES[what].name
+    files = starting_point(what, "brand_new")
+    assert "scene.toml" in files
+    for path, text in files.items():
+        assert old not in path
+        assert old not in text.replace(f"{old} lines", "").replace(f"{old} line", "")
+        assert f"class {old.capitalize()}" not in text
+
+
+@pytest.mark.parametrize(
+    ("what", "name", "said"),
+    [
+        ("scene", "two_springs", "a scene that is installed"),
+        ("component", "echo", "a component that is installed"),
+        ("component", "json", "a module of Python that is installed"),
+        ("link", "direct", "a link that is installed"),
+        ("link", "class", "no word of Python"),
+        ("component", "../out", "must be lower-case letters"),
+        ("component", "My-Solver", "must be lower-case letters"),
+    ],
+)
+def test_names_that_cannot_be_used_are_refused(tmp_path, what, name, said):
+    with pytest.raises(SceneError, match=said):
+        write_new(what, name, tmp_path / "new")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_nothing_is_overwritten(tmp_path):
+    (tmp_path / "mine").mkdir()
+    (tmp_path / "mine/scene.toml").write_text("precious")
+    with pytest.raises(SceneError, match="nothing is overwritten"):
+        write_new("scene", "mine", tmp_path / "mine")
+    assert (tmp_path / "mine/scene.toml").read_text() == "precious"
