@@ -9,6 +9,7 @@ from pathlib import Path
 from quintet.coupler.cli import (
     certificates,
     debugging,
+    examples,
     kinds,
     launching,
     pictures,
@@ -27,7 +28,13 @@ INTERRUPTED = 130  # exit status after Ctrl-C
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Run one command and exit with its status."""
-    options = parser().parse_args(arguments)
+    top = parser()
+    if "_ARGCOMPLETE" in os.environ:  # a shell asks for words, by argcomplete
+        # Start-up: no other command needs it.
+        from quintet.coupler.cli.completion import answer
+
+        answer(top)
+    options = top.parse_args(arguments)
     try:
         if isinstance(path := getattr(options, "json", None), Path):
             _require_writable(path)
@@ -70,7 +77,13 @@ def parser() -> argparse.ArgumentParser:
     commands = top.add_subparsers(required=True, metavar="COMMAND")
 
     def command(name: str, action: Action, text: str) -> argparse.ArgumentParser:
-        added = commands.add_parser(name, help=text, description=text)
+        added = commands.add_parser(
+            name,
+            help=text,
+            description=text,
+            epilog=examples.text_of(name),
+            formatter_class=argparse.RawDescriptionHelpFormatter,
+        )
         added.set_defaults(action=action, command=name)
         return added
 
