@@ -115,7 +115,9 @@ def _check_name(what: str, name: str) -> None:
             f"letter, at most {LONGEST} characters, and no word of Python; found {shown(name)}. "
             "Choose another one."
         )
-    taken = {"scene": library, "component": known_kinds, "link": known_links}[what]()
+    taken = set(
+        library() if what == "scene" else known_kinds() if what == "component" else known_links()
+    )
     if name in taken or (what != "scene" and find_spec(name) is not None):
         known = f"a {what}" if name in taken else "a module of Python"
         raise SceneError(

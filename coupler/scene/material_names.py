@@ -9,6 +9,7 @@ from quintet.coupler.scene.toml import read_file
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.materials.filling import fill, takes_materials
 from quintet.interfaces.materials.library import library, wrong_materials
+from quintet.interfaces.params import shown
 
 Table = dict[str, Any]
 KEY = "materials"  # of a scene
@@ -44,16 +45,23 @@ def _own_materials(described: Any, folder: Path) -> tuple[Mapping[str, Table], l
     where = KEY
     if isinstance(described, str):
         where = described
-        if not (folder / described).is_file():
+        if not _is_file(folder / described):
             return {}, [
-                f"{KEY}: file {described} must lie beside the scene; in its folder there is none. "
-                "Put it there, or correct its name."
+                f"{KEY}: file {shown(described)} must lie beside the scene; in its folder there is "
+                "none. Put it there, or correct its name."
             ]
         try:
             described = read_file(folder / described)
         except SceneError as error:
             return {}, error.mistakes
     return described, wrong_materials(described, where)
+
+
+def _is_file(path: Path) -> bool:
+    try:
+        return path.is_file()
+    except OSError:  # no file can have such a name
+        return False
 
 
 def _component(

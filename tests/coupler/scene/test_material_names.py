@@ -79,7 +79,9 @@ def test_materials_of_the_scene_stand_in_a_table_or_in_a_file_beside_it(scene):
 
 
 WRONG = {
-    'materials="none.toml"': "materials: file none.toml must lie beside the scene",
+    'materials="none.toml"': "materials: file 'none.toml' must lie beside the scene",
+    f'materials="{"x" * 300}.toml"': "must lie beside the scene; in its folder there is none.",
+    "materials=3": "materials must be tables by name; found 3. Write [materials.NAME].",
     "materials={nylon={youngs=1.0}}": "materials.nylon.youngs is not known. Did you mean youngs_",
     "components.spheres.materials.bead=glas": "material glas is not known. Did you mean glass?",
     "components.spheres.materials.bead=steel": "constants for this table: copper, 42CrMo4, rubber,",
