@@ -11,7 +11,7 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from quintet.interfaces.errors import PortError
+from quintet.interfaces.errors import PortError, SceneError
 from quintet.interfaces.units import check_unit
 
 Array = NDArray[Any]
@@ -274,6 +274,26 @@ class Component(ABC):
     @abstractmethod
     def load(self, state: Fields) -> None:
         """Come back to a saved state, bit for bit."""
+
+    def begin_from(self, state: Fields) -> None:
+        """Begin from a state that a component of this kind saved in another run.
+
+        Called after `bind`, instead of the start that the parameters describe. The clock begins at
+        0, and the parameters may be others than those of that run, where the kind allows it; if
+        nothing has changed, it must go on with the same bits. By default the state is loaded.
+
+        Raises
+        ------
+        SceneError
+            Where the state does not suit the parameters.
+        """
+        count = self.items()
+        self.load(state)
+        if self.items() > count:  # fewer: some have left
+            raise SceneError(
+                f"the state that it begins from must be of its {count} items; found "
+                f"{self.items()}. Make both scenes alike, or leave it out of begin_from.components."
+            )
 
     def totals(self) -> Totals:
         """Mass, momentum and energies of what it holds."""

@@ -18,6 +18,7 @@ import json
 import math
 import re
 from collections.abc import Iterable, Iterator, Mapping
+from contextvars import ContextVar
 from functools import cache
 from pathlib import Path
 from typing import Annotated, Any, dataclass_transform, get_args
@@ -77,8 +78,24 @@ def parameters(cls: type) -> Any:
     return dataclass(frozen=True, kw_only=True, config=config)(cls)
 
 
+_starts: ContextVar[bool] = ContextVar("starts", default=True)
+
+
+def starts_there() -> bool:
+    """Whether the parameters that are checked now also say where the component starts.
+
+    Not of a component that begins from the state of another run: where its bodies or particles
+    would stand otherwise is then no mistake.
+    """
+    return _starts.get()
+
+
 def read(
-    params: type, table: dict[str, Any], where: str, folder: Path | None = None
+    params: type,
+    table: dict[str, Any],
+    where: str,
+    folder: Path | None = None,
+    starts: bool = True,
 ) -> tuple[Any, list[str]]:
     """Check settings against a parameter class; return it filled, or None and every mistake.
 
@@ -92,9 +109,12 @@ def read(
         What the settings are called in sentences.
     folder : Path, by default the working folder
         Where their data files lie.
+    starts : bool
+        See `starts_there`.
     """
     if extreme := list(extremes(table, where)):
         return None, extreme
+    token = _starts.set(starts)
     try:
         # Strict checking of JSON takes lists for tuples, but no text for numbers.
         text = json.dumps(table)
@@ -109,6 +129,8 @@ def read(
         return None, [beyond_computing(where, table, error)]
     except (TypeError, ValueError) as error:
         return None, [f"{where}: {error}. Use numbers, text, lists and tables only."]
+    finally:
+        _starts.reset(token)
 
 
 @cache

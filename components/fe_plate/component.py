@@ -145,7 +145,9 @@ class FePlate(Component):
         decay = math.exp(-0.5 * damping * dt)  # of the kinetic energy, in either half
         if total.steps % EVERY == 0:
             works, is_first = self.state.works(self.model.moving), total.steps == 0
-            energies = self.state, self._motion(), works, total.brought
+            mass, kicks = self.added_mass.total(), (rows, self.half_kick) if self.glued else None
+            parts = mass[: self.model.moving], self.model.gravity, kicks
+            energies = self.state, motion(self.state, *parts), works, total.brought
             self.judge.note(*energies, self.all_ranks, is_first)
         total.steps += 1
         if damping:
@@ -241,6 +243,11 @@ class FePlate(Component):
         self.accumulated = Accumulated(time, brought, int(steps))
         self.judge.load(state["judge"])
 
+    def begin_from(self, state: Fields) -> None:
+        """Begin from the state of another run; times of pressures count from now on."""
+        super().begin_from(state)
+        self.accumulated.time = 0.0
+
     def totals(self) -> Totals:
         """Mass, momentum and energies, with added mass.
 
@@ -248,16 +255,9 @@ class FePlate(Component):
         and mass damping.
         """
         mass = self.added_mass.total()[: self.model.moving]
-        return totals(self.state, self.built, mass, self._motion(), self.all_ranks)
-
-    def _motion(self) -> list[Array]:
-        """Kinetic and potential energies [J] of the nodes that this rank moves."""
-        moving = self.model.moving
-        velocity = self.state.velocity[:moving]
-        if self.glued:
-            velocity = velocity.copy()
-            velocity[self.on_surface.rows] += self.half_kick
-        return motion(self.state, self.added_mass.total()[:moving], velocity, self.model.gravity)
+        kicks = (self.on_surface.rows, self.half_kick) if self.glued else None
+        energies = motion(self.state, mass, self.model.gravity, kicks)
+        return totals(self.state, self.built, mass, energies, self.all_ranks)
 
     def warnings(self) -> dict[str, str]:
         """Energy that appears, hourglassing, and motion that bulk viscosity takes."""

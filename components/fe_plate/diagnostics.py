@@ -4,15 +4,24 @@ import numpy as np
 
 from quintet.components.fe_plate.build import Structure
 from quintet.components.fe_plate.ranks.method import Ranks
-from quintet.components.fe_plate.state import DAMAGE, ENERGY, Array, State, at_points
+from quintet.components.fe_plate.state import DAMAGE, ENERGY, Array, State, Whole, at_points
 from quintet.components.shared.finite_items import require_finite_items
 from quintet.interfaces.component import Totals
 from quintet.interfaces.errors import StepError
 from quintet.interfaces.sums import finite
 
 
-def motion(state: State, mass: Array, velocity: Array, gravity: Array) -> list[Array]:
-    """Kinetic and potential energies (n,) J of masses (n,) kg at velocities (n, 3) m/s."""
+def motion(
+    state: State, mass: Array, gravity: Array, kicks: tuple[Whole | slice, Array] | None
+) -> list[Array]:
+    """Kinetic and potential energies (n,) J of the nodes that this rank moves, of mass (n,) kg.
+
+    `kicks` are rows (k,) and velocities (k, 3) m/s that these nodes lack to the end of a step.
+    """
+    velocity = state.velocity[: len(mass)]
+    if kicks is not None:
+        velocity = velocity.copy()
+        velocity[kicks[0]] += kicks[1]
     kinetic = 0.5 * mass * (velocity * velocity).sum(axis=1)
     return [kinetic, -mass * (state.position[: len(mass)] @ gravity)]
 

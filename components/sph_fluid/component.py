@@ -58,6 +58,7 @@ class SphFluid(Component):
         self.lists = FluidLists(params, self.samples, self.all_ranks)
         self.pressure_parts = features.pressure_parts(params, self.boundary)
         precision = features.precision(params, self.all_ranks)
+        self.born = self.all_ranks.fluid(self.state)  # particles of the fluid
         self.pairs = Interaction(params, self.boundary, self.symmetry, precision, self.samples)
         self.integration = features.integration(params)
         self.courant = features.courant_limit(params)
@@ -85,7 +86,8 @@ class SphFluid(Component):
         if not len(self.samples.volume):
             return
         features.refuse_misplaced(self.params, self.samples.body, fields["surface.position"])
-        if self.params.remove_inside_bodies:
+        is_begun = len(self.state.reference) > 0  # from another run, which has removed it
+        if self.params.remove_inside_bodies and not is_begun:
             self._notes += features.remove_inside_bodies(
                 self.state, self.samples, fields["surface.position"], self.params
             )
@@ -189,7 +191,8 @@ class SphFluid(Component):
         return self.all_ranks.whole(self.state).save() | {"placed": np.array(self.samples.placed)}
 
     def load(self, state: Fields) -> None:
-        """Come back to a saved state."""
+        """Come back to a saved state, of this run or of another that it begins from."""
+        diagnostics.refuse_other_particles(state, self.born, self.all_ranks.boundary(self.state))
         self.state, self.samples.placed = State.load(state), bool(state["placed"])
         self.all_ranks.load(self.state)
         self.samples.find_rows(self.state)

@@ -9,8 +9,8 @@ from quintet.components.sph_fluid.laws import TAIT, Constants
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.ranks.method import Ranks
 from quintet.components.sph_fluid.state import Array, State, Whole
-from quintet.interfaces.component import Totals
-from quintet.interfaces.errors import StepError
+from quintet.interfaces.component import Fields, Totals
+from quintet.interfaces.errors import SceneError, StepError
 from quintet.interfaces.sums import finite
 
 MACH = 0.5  # of the speed of sound: what strikes the fluid faster is refused
@@ -121,6 +121,21 @@ def _worst(state: State, spacing: float, dt: float) -> int:
     speed = np.linalg.norm(velocity[:, :3], axis=1)
     fast = float(speed.max()) * dt > spacing
     return int(np.argmax(speed) if fast else np.argmin(position[:, 3]))
+
+
+def refuse_other_particles(saved: Fields, fluid: int, boundary: int) -> None:
+    """Refuse a state of another fluid, or of other walls and surface samples.
+
+    Particles may have left the domain since the start: those that are there count.
+    """
+    there, born = len(saved["identity"]), int(np.max(saved["identity"], initial=-1)) + 1
+    walls = len(saved["sample"])
+    if there > fluid or born > fluid or walls != boundary:
+        raise SceneError(
+            f"the state that it begins from must be of its {fluid} fluid and {boundary} wall and "
+            f"surface particles; found {there} and {walls}. Make fluid, walls and bodies as they "
+            "were in that run."
+        )
 
 
 def refuse_dense(state: State, params: SphFluidParams, ranks: Ranks) -> None:

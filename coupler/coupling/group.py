@@ -5,7 +5,7 @@ beyond it is interpolated between the ends of the outer window, as a component's
 its steps; impulses that go beyond it are summed.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 from quintet.coupler.coupling.answers import AnswerSums
@@ -176,7 +176,10 @@ def assemble(
 
 
 def join_ports(
-    coupling: Coupling, described: Mapping[str, Fields], asked: Mapping[str, Iterable[str]]
+    coupling: Coupling,
+    described: Mapping[str, Fields],
+    asked: Mapping[str, Iterable[str]],
+    begin: Callable[[Coupling], None] = lambda _: None,
 ) -> None:
     """Join all ports and hand out what holds at the start.
 
@@ -186,6 +189,8 @@ def join_ports(
         Static fields that each component told.
     asked : mapping
         Outputs of each component that somebody wants who is no component.
+    begin : function
+        Brings components to where they start, if that is not where their parameters say.
     """
     exchange, participants = coupling.exchange, coupling.components
     static = exchange.bind(described, lambda name, request: participants[name].sample(request))
@@ -194,6 +199,7 @@ def join_ports(
         works, joined = exchange.works(name), exchange.joined(name)
         header = {"works": works, "joined": joined, "wanted": wanted[name]}
         participant.bind(static[name], **header)
+    begin(coupling)
     # Motion is known at once; forces, which follow from it, are zero before the first window.
     outputs = {
         name: participant.give(wanted[name], exchange.gives[name])

@@ -277,6 +277,11 @@ class Ledger:
         self._balance.load(state["balance"])
         self._motion.load(state["motion"])
 
+    def go_on(self, state: Mapping[str, Any]) -> None:
+        """Take over from another run's books what was on its way, and no sums or residuals."""
+        self._balance.load(state["balance"])
+        self._motion.load(state["motion"])
+
     def summary(self) -> dict[str, Any]:
         """What ``results.json`` says of it."""
         links = [

@@ -17,7 +17,15 @@ from quintet.interfaces.lines.message import Message, Shapes, order_of, require_
 from quintet.interfaces.lines.transport import WatchedLine
 from quintet.interfaces.serving.failing import sendable
 
-BEFORE = {"", "go", "describe", "sample", "bind", "prime"}  # orders in which a scene is refused
+BEFORE = {
+    "",
+    "go",
+    "describe",
+    "sample",
+    "bind",
+    "begin",
+    "prime",
+}  # orders in which a scene is refused
 LONGEST_WAIT = 86400.0  # s for one answer, also of a component that nobody watches
 
 
@@ -289,6 +297,12 @@ class Participant:
         """Ask for all state; it may hold what is not finite, as a limit that was not met yet."""
         self.send_order("save")
         return self.receive(finite=False).fields
+
+    def begin_from(self, state: Fields, goes_on: bool = False) -> None:
+        """Have it begin from a state of another run, of which it may go on with the inputs."""
+        answer = self.call("begin", state, goes_on=goes_on)
+        if goes_on:
+            self.stable = float(answer.header["stable"])
 
     def load(self, state: Fields, window: int) -> None:
         """Bring it to a saved state, after so many windows."""

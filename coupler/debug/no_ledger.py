@@ -43,5 +43,8 @@ class NoLedger:
         """See `Ledger.save`."""
         return {}
 
+    def go_on(self, state: Mapping[str, Any]) -> None:
+        """See `Ledger.go_on`."""
+
     def load(self, state: Mapping[str, Any]) -> None:
         """See `Ledger.load`."""

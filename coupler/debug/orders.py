@@ -26,6 +26,7 @@ from quintet.coupler.debug.request import Request
 from quintet.coupler.files.recording import NAME, Recording
 from quintet.coupler.launch.acceptance import settings
 from quintet.coupler.launch.order_log import OrderLog
+from quintet.coupler.run.beginning import Start
 from quintet.coupler.run.output import lay_stops
 from quintet.coupler.run.snapshots import restore_states
 from quintet.coupler.scene.scene import Scene
@@ -82,10 +83,13 @@ def _drive(request: Request, participants: Mapping[str, Participant], log: Order
     scene = request.scene
     ledger = cast(Ledger, NoLedger())
     coupling = assemble(scene.coupling, participants, scene.exchange(), ledger)
-    join_ports(coupling, describe_all(coupling.components), scene.asked_outputs())
+    start, described = Start(scene), describe_all(coupling.components)
+    join_ports(coupling, described, scene.asked_outputs(), start.begin)
     _lay_windows(coupling, scene)
     if request.snapshot:
         restore_states(coupling, request.snapshot)
+    else:
+        start.go_on(coupling)
     target = participants[request.component]
     while target.window <= request.window:
         order = request.failed_order

@@ -24,6 +24,7 @@ RUN_FILES = (  # of every run
     TRACE, CHROME_TRACE, FAILED_ORDERS, RESERVE,
 )  # fmt: skip
 SNAPSHOTS = "snapshot-*.h5"
+STATES = "state-*.h5"  # that stay, for other runs to begin from
 VIEWS, WALLS, FAILURE = ".vtkhdf", ".walls.vtkhdf", ".failure.vtkhdf"
 
 
@@ -35,6 +36,11 @@ def view_file(component: str) -> str:
 def walls_file(component: str) -> str:
     """File with what stands still around a component; no name of a component has a dot."""
     return f"{component}{WALLS}"
+
+
+def state_file(windows: int) -> str:
+    """File with the state of a run after so many windows, for others to begin from."""
+    return STATES.replace("*", str(windows))
 
 
 def failure_file(component: str) -> str:
@@ -54,7 +60,7 @@ class Marker:
     run: str  # of this run alone
     kind: str  # run, study or stability
     scene: str
-    files: tuple[str, ...]  # that the run may write, but for snapshots; from the folder on
+    files: tuple[str, ...]  # that the run may write, but for its snapshots; from the folder on
     format: int = FORMAT
 
 
@@ -100,7 +106,8 @@ def _within(folder: Path, names: Iterable[str]) -> list[Path]:
 
 
 def _snapshots(folder: Path) -> list[Path]:
-    return [*folder.glob(SNAPSHOTS), *folder.glob(SNAPSHOTS + PART)]
+    kinds = (SNAPSHOTS, STATES)
+    return [path for kind in kinds for end in ("", PART) for path in folder.glob(kind + end)]
 
 
 def leftovers(folder: Path, marker: Marker) -> list[Path]:

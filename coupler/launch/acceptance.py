@@ -23,6 +23,7 @@ def settings(scene: Scene, name: str) -> dict[str, Any]:
         "params": plan.params,
         "threads": plan.threads,
         "folder": str(scene.folder.resolve()),
+        **({"starts": False} if plan.begun else {}),
     }
 
 

@@ -17,7 +17,7 @@ from quintet.interfaces.component import Fields
 from quintet.interfaces.lines.message import PREFIX, Message, decode, encode
 
 IN_MEMORY = 1 << 24  # bytes of orders; more go into a file
-START = frozenset(("go", "describe", "sample", "bind", "give", "prime", "prepare"))
+START = frozenset(("go", "describe", "sample", "bind", "begin", "give", "prime", "prepare"))
 WITHOUT_EFFECT = frozenset(("view", "save", "conclude", "finish"))  # on the state; without fields
 
 

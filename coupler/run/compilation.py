@@ -19,6 +19,7 @@ from quintet.coupler.coupling.windows import Windows
 from quintet.coupler.launch.connect import connect
 from quintet.coupler.launch.processes import PYTHON
 from quintet.coupler.launch.watchdog import Watchdog
+from quintet.coupler.run.beginning import Start
 from quintet.coupler.run.loop import run
 from quintet.coupler.run.signals import StopRequest
 from quintet.coupler.scene.read import library, load, parse
@@ -74,7 +75,7 @@ def compile_scene(scene: Scene) -> None:
             ledger = Ledger(exchange)
             coupling = assemble(scene.coupling, connection.participants, exchange, ledger)
             asked, judgement = scene.asked_outputs(), Judgement(ledger.accounts)
-            run(coupling, scene.file.end, OneWindow(), asked, judgement)
+            run(coupling, scene.file.end, OneWindow(), asked, judgement, start=Start(scene))
         finally:
             connection.close(False)
 

@@ -10,6 +10,7 @@ from quintet.coupler.coupling.participant import describe_all
 from quintet.coupler.coupling.schedule import Coupling
 from quintet.coupler.coupling.schemes import advance
 from quintet.coupler.coupling.windows import Windows, run_windows
+from quintet.coupler.run.beginning import Start
 from quintet.interfaces.component import Fields
 
 
@@ -54,13 +55,15 @@ def run(
     asked: Mapping[str, Iterable[str]],
     judgement: Judgement,
     resume: Callable[[Coupling], None] | None = None,
+    start: Start | None = None,
 ) -> RunEnd:
     """Couple to the end [s], from the start or from where `resume` brings the coupling.
 
-    `asked` has the outputs of each component that are wanted although no link reads them.
+    `asked` has the outputs of each component that are wanted although no link reads them; `start`
+    is the state of another run that it begins from.
     """
     described = describe_all(coupling.components)
-    join_ports(coupling, described, asked)
+    join_ports(coupling, described, asked, *([start.begin] if start else []))
     plan, exchange = coupling.plan, coupling.exchange
     follows = plan.window == "auto" or bool(coupling.equal)
     length = float("inf") if plan.window == "auto" else plan.window
@@ -68,6 +71,8 @@ def run(
     observer.plan(windows)
     if resume:
         resume(coupling)
+    elif start:
+        start.go_on(coupling)
     observer.begin(coupling, described)
     ledger = coupling.ledger
     while not windows.finished and not observer.wants_end():

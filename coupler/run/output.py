@@ -3,7 +3,7 @@
 import contextlib
 import sys
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from types import MappingProxyType
 
@@ -20,7 +20,7 @@ from quintet.coupler.run.folder import discard_former
 from quintet.coupler.run.progress import ProgressReport, Reading
 from quintet.coupler.run.restart_points import RestartPoints
 from quintet.coupler.run.signals import StopRequest
-from quintet.coupler.run.snapshots import save
+from quintet.coupler.run.snapshots import keep_state, save
 from quintet.coupler.scene.scene import OutputSettings, Scene
 from quintet.interfaces.component import Fields
 from quintet.interfaces.errors import SceneError
@@ -43,10 +43,14 @@ def lay_stops(output: OutputSettings, windows: Windows) -> tuple[int, int, int]:
     )
     # Rows of the ledger come at the windows' ends: to watch a run must not change its steps.
     windows.stops = [time for time in (views, snapshots) if time]
-    # A picture of a time beyond the run's end shows its last state.
-    marks = (min(in_ticks(time, tick), windows.end) for time in output.pictures if time)
-    windows.marks = tuple(dict.fromkeys(marks))
+    pictures, states = (marks_of(times, windows) for times in (output.pictures, output.states))
+    windows.marks = tuple(dict.fromkeys((*pictures, *states)))
     return views, totals, snapshots
+
+
+def marks_of(times: Iterable[float], windows: Windows) -> tuple[int, ...]:
+    """Times [s] at which windows end [ticks]; one beyond the run's end is its end."""
+    return tuple(min(in_ticks(time, windows.tick), windows.end) for time in times if time)
 
 
 class OutputWriter:
@@ -77,6 +81,8 @@ class OutputWriter:
         self._views = 0  # ticks between two views; 0: none
         self._totals = 0  # ticks between two rows of the ledger
         self._snapshots = 0  # ticks between two snapshots; 0: by the clock
+        self._pictures: tuple[int, ...] = ()  # ticks
+        self._states: tuple[int, ...] = ()  # ticks, of those that are kept for other runs
         self._now = 0  # ticks
         self._windows = Windows(1.0, 1)
         self._recorder: Recorder | None = None
@@ -91,6 +97,9 @@ class OutputWriter:
         """See `Observer.plan`."""
         self._views, self._totals, self._snapshots = lay_stops(self.scene.file.output, windows)
         self._windows = windows
+        output = self.scene.file.output
+        self._pictures = marks_of(output.pictures, windows)
+        self._states = marks_of(output.states, windows)
 
     def begin(self, coupling: Coupling, described: Mapping[str, Fields]) -> None:
         """See `Observer.begin`."""
@@ -140,7 +149,7 @@ class OutputWriter:
 
     def _meets_picture(self, ticks: int) -> bool:
         """Whether the time of a picture lies between the last window's end and a time [ticks]."""
-        return any(self._now < mark <= ticks for mark in self._windows.marks)
+        return any(self._now < mark <= ticks for mark in self._pictures)
 
     def _passes(self, every: int, ticks: int) -> bool:
         """Whether a multiple of `every` lies between the last window's end and a time [ticks]."""
@@ -163,6 +172,8 @@ class OutputWriter:
             self._keep(coupling)
         elif self._restart_points:
             self._restart_points.end_window(coupling)
+        if any(self._now < mark <= now for mark in self._states):
+            keep_state(coupling, self.scene, self.folder, self.logs, self._judgement)
         self._now = now
         self.after_window(coupling)
 

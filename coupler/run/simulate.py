@@ -32,6 +32,7 @@ from quintet.coupler.launch.disturbance import UNDISTURBED, Disturbance
 from quintet.coupler.launch.processes import RUN, OwnProcesses, end_marked
 from quintet.coupler.launch.watchdog import Watchdog
 from quintet.coupler.run import results, snapshots
+from quintet.coupler.run.beginning import Start, provenance
 from quintet.coupler.run.energy import EnergyMeter
 from quintet.coupler.run.leaving import leave_in_time
 from quintet.coupler.run.loop import run
@@ -156,7 +157,8 @@ class ActiveRun:
         asked = scene.asked_outputs()
         if self.error_bar:
             asked = {name: keys | self.error_bar.needs[name] for name, keys in asked.items()}
-        end = run(coupling, scene.file.end, self.writer, asked, self.judgement, restore)
+        start = Start(scene)
+        end = run(coupling, scene.file.end, self.writer, asked, self.judgement, restore, start)
         for file in self.files:
             file.close()
         connection.close(True)
@@ -346,6 +348,7 @@ def conclude(run: ActiveRun) -> int:
         outcomes, bars = results.with_error_bars(run.error_bar, scene, folder, outcomes)
     content = {
         **results.headline(scene, outcome),
+        **provenance(scene),
         "expect": results.expectations(outcomes),
         "ledger": run.ledger.summary(),
         "repetitions": run.costs.repetitions,

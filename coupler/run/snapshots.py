@@ -7,7 +7,6 @@ by which one that was cut or changed since is found: the run then goes on from t
 """
 
 import contextlib
-import json
 import sys
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import asdict
@@ -16,7 +15,6 @@ from types import MappingProxyType
 from typing import Any
 
 import h5py
-import numpy as np
 
 from quintet.coupler.coupling.group import Group
 from quintet.coupler.coupling.iteration.convergence_log import ConvergenceLog, log_file
@@ -32,8 +30,9 @@ from quintet.coupler.files.disk import (
     reporting_disk,
     seal,
 )
-from quintet.coupler.files.hdf5 import OF_DATASET, create, room
-from quintet.coupler.files.run_files import LEDGER, SNAPSHOTS
+from quintet.coupler.files.hdf5 import create
+from quintet.coupler.files.run_files import LEDGER, SNAPSHOTS, state_file
+from quintet.coupler.files.stored_values import read_value, write_value
 from quintet.coupler.scene.read import load, parse
 from quintet.coupler.scene.scene import Scene
 from quintet.interfaces.errors import SceneError
@@ -77,6 +76,32 @@ def save(
     `views` has the checksum of what is in each component's view file.
     """
     path = folder / f"snapshot-{coupling.windows.done}.h5"
+    write(path, coupling, scene, logs, judgement, views)
+    remove(snapshots(folder)[:-KEPT])
+    return path
+
+
+def keep_state(
+    coupling: Coupling,
+    scene: Scene,
+    folder: Path,
+    logs: Mapping[str, ConvergenceLog],
+    judgement: Judgement,
+) -> None:
+    """Write a state that stays, for other runs to begin from."""
+    write(folder / state_file(coupling.windows.done), coupling, scene, logs, judgement, {})
+
+
+def write(
+    path: Path,
+    coupling: Coupling,
+    scene: Scene,
+    logs: Mapping[str, ConvergenceLog],
+    judgement: Judgement,
+    views: Mapping[str, int],
+) -> None:
+    """Write the state of a run at the end of a window; it is there whole or not at all."""
+    folder = path.parent
     part = path.with_name(path.name + PART)
     participants = coupling.components
     coupling.ledger.sync()
@@ -97,28 +122,11 @@ def save(
     with removed_on_failure(part), reporting_disk(path):
         with create(part) as file:
             for name, participant in participants.items():
-                _write(file, f"components/{name}", participant.save())
+                write_value(file, f"components/{name}", participant.save())
             for name, value in rest.items():
-                _write(file, name, value)
+                write_value(file, name, value)
         seal(part)
         put_in_place(part, path)
-    remove(snapshots(folder)[:-KEPT])
-    return path
-
-
-def _write(file: h5py.File, name: str, value: Any) -> None:
-    with room(file, _largest(value)):
-        _put(file, name, value)
-
-
-def _largest(value: Any) -> int:
-    """Bytes that a value may need on the disk."""
-    if isinstance(value, dict):
-        return OF_DATASET + sum(map(_largest, value.values()))
-    if isinstance(value, (list, tuple)) and any(isinstance(item, np.ndarray) for item in value):
-        return OF_DATASET + sum(map(_largest, value))
-    size = value.nbytes if isinstance(value, np.ndarray) else len(json.dumps(value))
-    return OF_DATASET + int(size)
 
 
 @contextlib.contextmanager
@@ -143,16 +151,16 @@ def states(coupling: Coupling) -> dict[str, Any]:
 def restore_states(coupling: Coupling, path: Path) -> None:
     """Bring a coupling whose ports are joined, and its components, to a snapshot."""
     with _read(path) as file:
-        tick = _get(file, "tick")
+        tick = read_value(file, "tick")
         if tick != coupling.windows.tick:
             raise SceneError(
                 f"snapshot {path.name}: times must be counted in {tick!r} s as before; found "
                 f"{coupling.windows.tick!r} s. Resume with the same window and end."
             )
-        windows = _get(file, "windows")
+        windows = read_value(file, "windows")
         for name, participant in coupling.components.items():
-            participant.load(_get(file, f"components/{name}"), windows[name])
-        state = _get(file, "coupling")
+            participant.load(read_value(file, f"components/{name}"), windows[name])
+        state = read_value(file, "coupling")
         _require_same_fields(coupling, state["own"])
         coupling.load(state["own"])
         for name, saved in state["groups"].items():
@@ -176,9 +184,9 @@ def restore(coupling: Coupling, judgement: Judgement, path: Path) -> None:
     """Bring a run whose ports are joined to a snapshot."""
     restore_states(coupling, path)
     with _read(path) as file:
-        coupling.ledger.load(_get(file, "ledger"))
-        judgement.load(_get(file, "judgement"))
-        for name, cost in attributes_like(coupling.costs, _get(file, "costs")).items():
+        coupling.ledger.load(read_value(file, "ledger"))
+        judgement.load(read_value(file, "judgement"))
+        for name, cost in attributes_like(coupling.costs, read_value(file, "costs")).items():
             setattr(coupling.costs, name, cost)
     # Later ones were cut or changed, or are of windows that are now done again.
     remove(snapshot for snapshot in snapshots(path.parent) if window_of(snapshot) > window_of(path))
@@ -208,7 +216,7 @@ def latest(folder: Path, quietly: bool = False) -> Path:
 def asked_of(path: Path) -> dict[str, Any]:
     """What was asked for in the run of a snapshot: a scene, and what changes it."""
     with _read(path) as file:
-        asked = dict(_get(file, "asked"))
+        asked = dict(read_value(file, "asked"))
         patterns = {"scene": "", "preset": "", "transport": "", "settings": [], "swaps": []}
         for key, pattern in patterns.items():
             if isinstance(pattern, list):
@@ -247,14 +255,16 @@ def _without_cores(scene: Mapping[str, Any]) -> dict[str, Any]:
 def windows_of(path: Path) -> dict[str, int]:
     """Windows that each component had done when a snapshot was made."""
     with _read(path) as file:
-        return {name: like(0, done) for name, done in _get(file, "windows").items()}
+        return {name: like(0, done) for name, done in read_value(file, "windows").items()}
 
 
 def file_sizes(path: Path) -> tuple[int, dict[str, int]]:
     """Lengths of the ledger and of the convergence logs when a snapshot was made [bytes]."""
     with _read(path) as file:
-        lengths = dict(_get(file, "logs"))
-        return like(0, _get(file, "ledger")["size"]), {k: like(0, v) for k, v in lengths.items()}
+        lengths = dict(read_value(file, "logs"))
+        return like(0, read_value(file, "ledger")["size"]), {
+            k: like(0, v) for k, v in lengths.items()
+        }
 
 
 def check_files(path: Path) -> None:
@@ -262,7 +272,7 @@ def check_files(path: Path) -> None:
     with _read(path) as file:
         sums = {
             like("", name): [like(0, number) for number in (size, checksum)]
-            for name, (size, checksum) in dict(_get(file, "files") or {}).items()
+            for name, (size, checksum) in dict(read_value(file, "files") or {}).items()
         }
     require_same(path.parent, sums, sums)
 
@@ -270,44 +280,4 @@ def check_files(path: Path) -> None:
 def view_checks(path: Path) -> dict[str, int]:
     """Checksums of what was in the view files of components when a snapshot was made."""
     with _read(path) as file:
-        return dict(_get(file, "views") or {})
-
-
-def _put(group: Any, name: str, value: Any) -> None:
-    """Write tables and lists of arrays, numbers and texts; None is left out."""
-    if value is None:
-        return
-    if isinstance(value, dict):
-        part = group.create_group(name, track_order=True)
-        for number, item in enumerate(value.values()):
-            _put(part, str(number), item)
-        part.attrs["keys"] = json.dumps(list(value))
-    elif isinstance(value, (list, tuple)) and any(isinstance(item, np.ndarray) for item in value):
-        part = group.create_group(name)
-        for number, item in enumerate(value):
-            _put(part, str(number), item)
-        part.attrs["count"] = len(value)
-    elif isinstance(value, np.ndarray):
-        group[name] = value
-    else:
-        group[name] = json.dumps(value)  # a dataset, as an attribute ends at 64 KiB
-        group[name].attrs["json"] = True
-
-
-def _get(group: Any, name: str) -> Any:
-    if name not in group:
-        return None
-    stored = group[name]
-    if isinstance(stored, h5py.Dataset):
-        if "json" in stored.attrs:
-            return json.loads(stored.asstr()[()])
-        return np.asarray(stored[()])
-    if "keys" in stored.attrs:
-        keys = [_key(key) for key in json.loads(stored.attrs["keys"])]
-        return {key: _get(stored, str(number)) for number, key in enumerate(keys)}
-    return tuple(_get(stored, str(number)) for number in range(stored.attrs["count"]))
-
-
-def _key(key: Any) -> Any:
-    """A key of a table; JSON has lists where tables have tuples."""
-    return tuple(key) if isinstance(key, list) else key
+        return dict(read_value(file, "views") or {})

@@ -1,6 +1,6 @@
 """``[components.NAME]``: kind and settings of each component, checked by its manifest."""
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import fields
 from pathlib import Path
 from typing import Any
@@ -35,6 +35,7 @@ def read_components(
     mistakes: list[str],
     imports: bool = True,
     links: Iterable[Table] = (),
+    begun: Collection[str] = (),
 ) -> dict[str, ComponentPlan]:
     """Read the components of a scene; those with mistakes are left out.
 
@@ -50,6 +51,8 @@ def read_components(
         Whether code of the scene's own may be imported to read them.
     links
         Tables of the links: components whose tables their partners complete are read last.
+    begun
+        Components that begin from another run: where they would stand otherwise is not checked.
     """
     plans: dict[str, ComponentPlan] = {}
     pairs = list(_pairs(links))
@@ -68,7 +71,8 @@ def read_components(
             )
         elif not _waits(name, pairs, completed, table.keys() - plans.keys()):
             partners = _starts(name, pairs, plans) if name in last else {}
-            if plan := _component(name, dict(keys), folder, mistakes, imports, partners):
+            settings = (name, dict(keys), folder, mistakes, imports, partners)
+            if plan := _component(*settings, begun=name in begun):
                 plans[name] = plan
     return {name: plans[name] for name in table if name in plans}
 
@@ -127,6 +131,7 @@ def _component(
     mistakes: list[str],
     imports: bool,
     partners: Fields,
+    begun: bool,
 ) -> ComponentPlan | None:
     where = f"components.{name}"
     if not isinstance(kind := keys.get("kind"), str):
@@ -156,7 +161,7 @@ def _component(
     try:
         if partners and manifest.complete:
             keys = manifest.complete(keys, partners)
-        params, wrong = read(manifest.params, keys, where, folder)
+        params, wrong = read(manifest.params, keys, where, folder, starts=not begun)
         if wrong:
             mistakes += wrong
             return None
@@ -174,7 +179,7 @@ def _component(
         mistakes.append(f"{where}: kind {kind} cannot tell its ports from these settings ({said}).")
         return None
     return ComponentPlan(
-        name, kind, manifest, keys, params, takes, gives, common.threads, common.ranks, plan
+        name, kind, manifest, keys, params, takes, gives, common.threads, common.ranks, plan, begun
     )
 
 

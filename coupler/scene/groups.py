@@ -117,7 +117,13 @@ def refused(
 def begins_wrong(
     components: dict[str, ComponentPlan], links: list[Link], expect: list[Expectation]
 ) -> list[str]:
-    """What links and expectations refuse of how components begin, where their kinds can tell."""
+    """What links and expectations refuse of how components begin, where their kinds can tell.
+
+    Of components that begin from another run that is found when their ports are joined.
+    """
+    begun = {name for name, component in components.items() if component.begun}
+    ends = [{name for t in link.transfers for name in t.ends} for link in links]
+    links = [link for link, of_link in zip(links, ends, strict=True) if begun.isdisjoint(of_link)]
     linked = [name for link in links for transfer in link.transfers for name in transfer.ends]
     initial: dict[str, Fields] = {}
     for name in dict.fromkeys([*linked, *(expectation.component for expectation in expect)]):

@@ -11,6 +11,7 @@ from typing import Any
 
 from quintet.coupler.measures.evaluation import check
 from quintet.coupler.measures.expectation import Expectation
+from quintet.coupler.scene.begin_table import Beginning, beginning_of
 from quintet.coupler.scene.component_tables import read_components, require_components
 from quintet.coupler.scene.foreign_code import announce, trusted_tables
 from quintet.coupler.scene.groups import (
@@ -166,7 +167,11 @@ def _check(
     mistakes = [_also_tables(mistake) for mistake in mistakes]
     component_tables = require_components(path, table, mistakes)
     link_tables = _tables(table, "links", mistakes)
-    components = read_components(component_tables, path.parent, mistakes, imports, link_tables)
+    beginning = _beginning(table, path.parent, mistakes)
+    begun = beginning.components if beginning else ()
+    components = read_components(
+        component_tables, path.parent, mistakes, imports, link_tables, begun
+    )
     wrong = set(component_tables) - set(components)  # their mistakes are known already
     unread = {name for name, plan in components.items() if plan.unread}
     links = read_links(link_tables, components, wrong | unread, mistakes)
@@ -202,7 +207,17 @@ def _check(
         raise SceneError([f"{path.name}: {mistake}" for mistake in dict.fromkeys(mistakes)])
     resolved = {k: v for k, v in table.items() if k not in ("presets", *VARIED)}
     scene = Scene(file, path, preset, components, links, coupling, expect, resolved, file.transport)
+    scene.beginning = beginning
     return scene, variants
+
+
+def _beginning(table: dict[str, Any], folder: Path, mistakes: list[str]) -> Beginning | None:
+    """Find the state of another run that a scene begins from, if it does."""
+    try:
+        return beginning_of(table, folder)
+    except SceneError as error:
+        mistakes.append(str(error))
+        return None
 
 
 def _also_tables(mistake: str) -> str:

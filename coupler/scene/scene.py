@@ -13,6 +13,7 @@ from quintet.coupler.coupling.link import Link
 from quintet.coupler.coupling.plan import CouplingPlan, Scheme
 from quintet.coupler.measures.expectation import Expectation
 from quintet.coupler.measures.watched import ErrorBarSettings
+from quintet.coupler.scene.begin_table import BeginFrom, Beginning
 from quintet.interfaces.component import Field, Fields, Port
 from quintet.interfaces.lines.endpoint import Security
 from quintet.interfaces.manifest import Manifest, Plan
@@ -91,6 +92,10 @@ class OutputSettings:
     snapshots : s
         Between two, to resume from; 0: every ten minutes of the clock, every 5 s where components
         may be started again, and at an interruption.
+    states : s
+        Times at which the states of all components are kept in a file that stays, for other scenes
+        to `begin_from`; windows that follow the state end there, and a time beyond the end is the
+        end.
     record
         Whether every exchange is recorded.
     fields
@@ -110,6 +115,7 @@ class OutputSettings:
     displacement_scale: Positive = 1.0
     totals: NotNegative = 0.0
     snapshots: NotNegative = 0.0
+    states: tuple[NotNegative, ...] = ()
     record: bool = True
     fields: tuple[str, ...] = ()
     watch: tuple[str, ...] = ()
@@ -158,6 +164,9 @@ class SceneFile:
     restarts : 1
         How often each component may be started again when its process dies, over the transport
         zenoh: another process takes over with the same bits. 0: its death ends the run.
+    begin_from
+        Folder of a run whose state is the start of this one, or a table. Components begin there by
+        their names, with positions, velocities and contacts; the time begins at 0.
     iteration
         How windows are repeated, under the scheme iterated.
     output
@@ -179,6 +188,7 @@ class SceneFile:
     minutes: Number = 0.0
     patience: NotNegative = 0.0
     restarts: Annotated[int, pydantic.Field(ge=0, le=1000)] = 0
+    begin_from: str | BeginFrom = ""
     iteration: IterationSettings = IterationSettings()
     output: OutputSettings = OutputSettings()
     error_bar: ErrorBarSettings = ErrorBarSettings()
@@ -198,6 +208,7 @@ class ComponentPlan:
     threads: int = 1
     ranks: int = 1
     planned: Plan | None = None  # what running it will need, where its kind can tell
+    begun: bool = False  # whether its state at the start is that of another run
     unread: bool = False  # its kind is code that was not imported: keys and ports are unknown
 
     def initial(self) -> Fields:
@@ -224,6 +235,7 @@ class Scene:
     resolved: dict[str, Any]  # the scene as it runs, for scene.toml
     transport: Transport = "zenoh"
     asked: dict[str, Any] = field(default_factory=dict)  # what `read.load` was given
+    beginning: Beginning | None = None  # the state of another run that it begins from
     elsewhere: set[str] = field(default_factory=set)  # components joined by hand
     grace: float = 0.0  # s more for the end of a window and a snapshot, once an end is asked for
     chaos: int | None = None  # seed of the disturbances of the run, if it is to be disturbed

@@ -89,6 +89,8 @@ def named_files(scene: Scene) -> Iterator[tuple[str, Path]]:
             for place in (path, path / RECORDING):
                 if place.is_file():
                     yield text, place
+    if scene.beginning is not None:
+        yield "begin_from", scene.beginning.path
     modules = {kind.split(":")[0] for kind in kinds_of(scene.resolved["components"]) if ":" in kind}
     for module in modules:
         for place in map(Path, scene.import_folders):

@@ -9,6 +9,7 @@ LEGAL: dict[str, dict[str, str]] = {
     "new": {"describe": "described", "finish": "finished"},
     "described": {"sample": "described", "bind": "ready", "finish": "finished"},
     "ready": {
+        "begin": "ready",
         "give": "ready",
         "prime": "ready",
         "prepare": "ready",

@@ -50,7 +50,11 @@ NAMES: Rule = is_names, "a list of names"
 FLAG: Rule = lambda value: isinstance(value, bool), "true or false"
 OF_ALL: dict[str, Rule] = {"window": COUNT, "depth": COUNT, "trial": FLAG}
 OPTIONAL: dict[str, dict[str, Rule]] = {
-    "go": {"folder": (lambda value: isinstance(value, str) and "\0" not in value, "a folder")},
+    "go": {
+        "folder": (lambda value: isinstance(value, str) and "\0" not in value, "a folder"),
+        "starts": FLAG,
+    },
+    "begin": {"goes_on": FLAG},
     "bind": {
         "joined": NAMES,
         "wanted": NAMES,

@@ -183,7 +183,10 @@ def build(manifest: Manifest, header: dict[str, Any], communicator: Any = None) 
     check_order("go", header)
     folder = Path(header.get("folder", ""))
     resources = Resources(int(header["threads"]), folder, communicator)
-    params, mistakes = read(manifest.params, header["params"], manifest.kind, resources.folder)
+    starts = bool(header.get("starts", True))
+    params, mistakes = read(
+        manifest.params, header["params"], manifest.kind, resources.folder, starts
+    )
     if mistakes:
         raise SceneError(mistakes)
     notice("importing the solver")

@@ -18,6 +18,7 @@ from quintet.interfaces.errors import (
     MessageError,
     OrderError,
     PortError,
+    SceneError,
     StepError,
 )
 from quintet.interfaces.lines.message import Message, require_finite
@@ -28,6 +29,7 @@ from quintet.interfaces.serving.order_guard import OrderGuard
 from quintet.interfaces.serving.orders import check_order
 from quintet.interfaces.serving.outputs import InputAudit, Outputs, Sums
 from quintet.interfaces.serving.port_view import look_at
+from quintet.interfaces.serving.states import parts_of, unlike
 from quintet.interfaces.sums import column_sums
 
 Answer = tuple[dict[str, Any], Fields]
@@ -80,6 +82,7 @@ class Server:
             "describe": self._describe,
             "sample": lambda request: ({}, self.component.sample(request.fields)),
             "bind": self._bind,
+            "begin": self._begin,
             "prime": self._prime,
             "prepare": self._prepare,
             "give": self._give,
@@ -266,14 +269,26 @@ class Server:
         arrays = {f"component/{key}": array for key, array in self.component.save().items()}
         return arrays | {f"inputs/{key}": array for key, array in self.inputs.save().items()}
 
+    def _begin(self, message: Message) -> Answer:
+        """Begin from a state of another run; with its inputs where that run is gone on with."""
+        parts = parts_of(message.fields)
+        try:
+            self.component.begin_from(parts["component"])
+        except (LookupError, TypeError, ValueError) as error:
+            said = unlike(parts["component"], self.component.save()) or str(error)
+            raise SceneError(
+                f"the state that it begins from must be one of a component like this; {said}. "
+                "Leave what it is made of as it was."
+            ) from error
+        self._stable = None
+        if not message.header.get("goes_on"):
+            return {}, {}
+        self.inputs.load(parts["inputs"])
+        return {"stable": self.stable()}, {}
+
     def restore(self, state: Fields) -> None:
         """Come back to a state."""
-        parts: dict[str, dict[str, Any]] = {"component": {}, "inputs": {}}
-        for name, array in state.items():
-            part, _, key = name.partition("/")
-            if part not in parts:
-                raise OrderError(f"a state has no part {reprlib.repr(part)}.")
-            parts[part][key] = array
+        parts = parts_of(state)
         try:
             self.component.load(parts["component"])
         except (LookupError, TypeError, ValueError) as error:
@@ -316,16 +331,6 @@ class Server:
 
 def _texts(warnings: Mapping[str, str]) -> dict[str, str]:
     return {str(subject): str(text) for subject, text in warnings.items()}
-
-
-def unlike(state: Fields, others: Fields) -> str:
-    """Say in what a state differs from one of a component's own; "" where nothing is seen."""
-    for key in sorted(state.keys() | others.keys()):
-        if key not in state or key not in others:
-            return f"{key} is {'missing' if key in others else 'not known'}"
-        if (shape := np.shape(state[key])) != np.shape(others[key]):
-            return f"{key} has shape {shape}, not {np.shape(others[key])}"
-    return ""
 
 
 def depth(message: Message) -> int:

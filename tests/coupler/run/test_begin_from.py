@@ -1,0 +1,188 @@
+"""A run that begins from the state of another: the same bits where nothing has changed."""
+
+import json
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+from started import write_scene
+
+from quintet.coupler.cli import main
+from quintet.coupler.files.states import hash_of, states_of
+from quintet.coupler.scene.read import load
+from quintet.coupler.study.run_hash import run_hash
+from quintet.interfaces.errors import SceneError
+
+SCENARIOS = Path(__file__).parents[2] / "scenarios"
+ZENOH = pytest.param("zenoh", marks=pytest.mark.zenoh)
+
+
+def status(*arguments):
+    with pytest.raises(SystemExit) as ended:
+        main([str(argument) for argument in arguments])
+    return ended.value.code
+
+
+def run(scene, out, *settings, transport="memory"):
+    """Run a scene with settings; return its folder."""
+    sets = [part for setting in settings for part in ("--set", setting)]
+    assert status("run", scene, "--transport", transport, "--out", out, *sets) in (0, 1)
+    return out
+
+
+def rows(folder):
+    """All recorded fields of a run, by their places in its recording."""
+    with h5py.File(folder / "recording.h5") as file:
+        return {
+            f"{name}/{key}": array[()]
+            for name, component in file["components"].items()
+            for key, array in component["fields"].items()
+        }
+
+
+def is_the_end_of(again, whole):
+    """Whether the fields of a run have the bits of the last rows of another."""
+    ends = {key: array[len(array) - len(rows(again)[key]) :] for key, array in rows(whole).items()}
+    assert ends.keys() == rows(again).keys() and ends
+    return all(np.array_equal(ends[key], array) for key, array in rows(again).items())
+
+
+def two_stages(scene, folder, half, *settings, transport="memory"):
+    """Run a scene once as a whole, and once in two stages; return whole and second stage."""
+    whole = run(scene, folder / "whole", *settings, f"end={2 * half}", f"output.states=[{half}]")
+    keep = ("output.states=[1e9]", f"end={half}")
+    run(scene, folder / "first", *settings, *keep, transport=transport)
+    begin = (f"end={half}", f'begin_from="{folder / "first"}"')
+    return whole, run(scene, folder / "again", *settings, *begin, transport=transport)
+
+
+@pytest.mark.parametrize("transport", ["memory", ZENOH])
+@pytest.mark.parametrize("scheme", ["serial", "parallel", "iterated"])
+def test_toys_go_on_with_the_same_bits(tmp_path, scheme, transport):
+    scene = write_scene(tmp_path, ping="substeps = 7", pong="substeps = 3")
+    whole, again = two_stages(scene, tmp_path, 0.03, f'scheme="{scheme}"', transport=transport)
+    assert len(rows(again)["ping/out.number"]) == 31 and is_the_end_of(again, whole)
+
+
+def test_two_springs_that_iterate_go_on_with_the_same_bits(tmp_path):
+    assert is_the_end_of(*reversed(two_stages("two_springs", tmp_path, 0.04)))
+
+
+def test_water_and_a_body_go_on_with_the_same_bits(tmp_path):
+    stages = two_stages(SCENARIOS / "small_dam.toml", tmp_path, 0.02)
+    assert is_the_end_of(*reversed(stages))
+
+
+def test_time_begins_at_0_and_the_books_close(tmp_path):
+    scene = write_scene(tmp_path)
+    _, again = two_stages(scene, tmp_path, 0.03)
+    results = json.loads((again / "results.json").read_text())
+    assert results["time"] == 0.03 and results["windows"] == 30
+    link = results["ledger"]["links"][0]
+    assert link["momentum_residual"] < 1e-12
+
+
+def test_another_link_begins_with_components_where_they_were(tmp_path):
+    scene = write_scene(tmp_path)
+    first = run(scene, tmp_path / "first", "end=0.03", "output.states=[1.0]")
+    settings = (f'begin_from="{first}"', "end=0.01", 'links.0.name="other"')
+    again = run(scene, tmp_path / "again", *settings)
+    before, after = rows(first), rows(again)
+    instants = [key for key in before if key.endswith("number")]
+    assert all(np.array_equal(before[key][-1], after[key][0]) for key in instants)
+
+
+def test_a_state_is_chosen_by_its_time(tmp_path):
+    scene = write_scene(tmp_path)
+    whole = run(scene, tmp_path / "whole", "end=0.03", "output.states=[0.01, 0.02]")
+    assert [path.name for path in states_of(whole)] == ["state-10.h5", "state-20.h5"]
+    begin = f'begin_from={{run="{whole}", time=0.01}}'
+    again = run(scene, tmp_path / "again", begin, "end=0.02")
+    assert is_the_end_of(again, whole)
+    with pytest.raises(SceneError, match=r"time must be .* at 0\.01, 0\.02 s; found 0\.015 s"):
+        load(str(scene), settings=[f'begin_from={{run="{whole}", time=0.015}}'])
+
+
+def test_results_name_the_run_begun_from(tmp_path):
+    scene = write_scene(tmp_path)
+    _, again = two_stages(scene, tmp_path, 0.01)
+    told = json.loads((again / "results.json").read_text())["begin_from"]
+    first = tmp_path / "first"
+    marker = json.loads((first / "quintet-run.json").read_text())
+    assert told["run"] == str(first) and told["id"] == marker["run"] and told["scene"] == "toy"
+    assert told["hash"] == hash_of(first / told["state"]) and told["time"] == 0.01
+    assert told["components"] == ["ping", "pong"]
+
+
+def test_the_hash_of_a_run_covers_the_state_that_it_begins_from(tmp_path):
+    scene = write_scene(tmp_path)
+    two_stages(scene, tmp_path, 0.01)
+    begun = [f'begin_from="{tmp_path / "first"}"']
+    before = run_hash(load(str(scene), settings=begun))
+    again = ("--transport", "memory", "--out", tmp_path / "first", "--force")
+    sets = ("--set", "output.states=[1.0]", "--set", "end=0.01", "--set", 'scheme="parallel"')
+    assert status("run", scene, *again, *sets) == 0
+    assert run_hash(load(str(scene), settings=begun)) != before
+
+
+def test_a_folder_may_be_named_from_the_scene_or_from_here(tmp_path, monkeypatch):
+    scene = write_scene(tmp_path)
+    run(scene, tmp_path / "runs/settle", "end=0.01", "output.states=[1.0]")
+    other = tmp_path / "elsewhere"
+    other.mkdir()
+    for place in (tmp_path, other):
+        monkeypatch.chdir(place)
+        checked = load(str(scene), settings=['begin_from="runs/settle"'])
+        assert checked.beginning.folder == tmp_path / "runs/settle"
+
+
+def test_an_interrupted_second_stage_is_resumed_with_the_same_bits(tmp_path, monkeypatch):
+    from quintet.coupler.run import snapshots
+    from quintet.coupler.run.simulate import make_folder, simulate
+
+    scene = write_scene(tmp_path)
+    whole, _ = two_stages(scene, tmp_path, 0.03)
+    monkeypatch.setattr(snapshots, "remove", lambda paths: None)
+    settings = [f'begin_from="{tmp_path / "first"}"', "end=0.03", "output.snapshots=0.01"]
+    checked = load(str(scene), settings=settings)
+    folder = tmp_path / "resumed"
+    make_folder(checked, folder)
+    assert simulate(checked, folder) == 0
+    snapshot = folder / "snapshot-20.h5"
+    assert simulate(load(str(scene), settings=settings), folder, snapshot) == 0
+    assert is_the_end_of(folder, whole)
+
+
+@pytest.mark.parametrize(
+    ("begin", "said"),
+    [
+        ('"nowhere"', r"begin_from must be the folder of a run; found 'nowhere'"),
+        ('"first"', r"must have kept a state; it has none\. Let it keep one with --set"),
+        ('{run="kept", components=["pang"]}', r"pang of this scene is not known\. Did you mean p"),
+        ('{run="kept", tyme=1.0}', r"begin_from\.tyme is not known\. Did you mean time\?"),
+        ("3", r"begin_from"),
+    ],
+)
+def test_what_cannot_be_begun_from_is_refused(tmp_path, monkeypatch, begin, said):
+    scene = write_scene(tmp_path)
+    run(scene, tmp_path / "first", "end=0.01")
+    run(scene, tmp_path / "kept", "end=0.01", "output.states=[1.0]")
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(SceneError, match=said):
+        load(str(scene), settings=[f"begin_from={begin}"])
+
+
+def test_components_of_other_kinds_and_names_are_refused(tmp_path):
+    scene = write_scene(tmp_path)
+    first = run(scene, tmp_path / "first", "end=0.01", "output.states=[1.0]")
+    other = tmp_path / "other.toml"
+    text = scene.read_text()
+    lines = [f'begin_from = "{first}"', *text.replace("toys:Toy", "echo", 1).splitlines()]
+    other.write_text("\n".join(lines))
+    with pytest.raises(SceneError, match=r"ping must be of kind toys:Toy, as in .*; found echo"):
+        load(str(other))
+    renamed = text.replace("ping", "a").replace("pong", "b")
+    other.write_text("\n".join([f'begin_from = "{first}"', *renamed.splitlines()]))
+    with pytest.raises(SceneError, match=r"in the run in .* there are ping, pong, here a, b"):
+        load(str(other))
