@@ -22,7 +22,8 @@ An agglomerate is a shape from a file (STL, OBJ, PLY, voxels as .npy) whose surf
 cover from within; its mass and inertia are those of the shape, and fluids meet the shape itself.
 
 Any of a body's six degrees of freedom may be `locked`: it then keeps its velocity there. Planes are
-infinite and at rest, in any pose; a box with all six locked is a finite one, at rest or moving.
+infinite and at rest, in any pose, and may vanish (`until`); a box with all six locked is a finite
+one, at rest or moving. Locks may end (`released_at`).
 
 In two dimensions bodies are discs and polygons in the plane of x and z, prisms of 1 m along y, and
 move in it: nothing here pushes them out of it, and what loads would is left out. A disc has the

@@ -5,7 +5,7 @@ from dataclasses import astuple
 
 import numpy as np
 
-from quintet.components.dem_bodies import MANIFEST, build, diagnostics, features
+from quintet.components.dem_bodies import MANIFEST, begin, build, diagnostics, features
 from quintet.components.dem_bodies import state as rows
 from quintet.components.dem_bodies.diagnostics import ALLOWED_DEPTH, Accumulated
 from quintet.components.dem_bodies.params import DemBodiesParams
@@ -23,7 +23,7 @@ from quintet.interfaces.component import (
     Resources,
     Totals,
 )
-from quintet.interfaces.errors import StepError
+from quintet.interfaces.errors import SceneError, StepError
 
 LEAVE_PLANE = [1, 3, 5]  # force along y, torque about x and z
 LOADS = ("load.force", "load.torque")
@@ -59,6 +59,7 @@ class DemBodies(Component):
         self.stepping = features.stepping(params, model, state, *parts, resources)
         self.model, self.state = self.stepping.model, self.stepping.state
         self.lists = self.stepping.lists
+        self.timetable = features.timetable(params, self.bodies, self.model)
         self.limit = features.step_limit(params, self.model, *parts)
         self.accumulated = Accumulated()
         self.count, self.mass = len(self.bodies), masses(self.bodies, self.solids)  # (m,) kg
@@ -108,6 +109,8 @@ class DemBodies(Component):
         elastic = self.state.report[rows.ELASTIC_ENERGY]
         if self.params.contact_forces:
             self.state.previous_contact_load[:] = self.state.contact_load
+        if self.timetable:
+            self.timetable.advance(self.state, self.accumulated.time, dt)
         self._move(dt)
         self.accumulated.add(dt, elastic, self.state.report)
 
@@ -166,8 +169,9 @@ class DemBodies(Component):
         self._begin()
         _, state = self.stepping.whole()
         arrays = {name: array.copy() for name, array in state._asdict().items()}
-        accumulated = np.array(astuple(self.accumulated))
-        return arrays | self.lists.save() | {"accumulated": accumulated}
+        arrays["accumulated"] = np.array(astuple(self.accumulated))
+        arrays |= self.timetable.save() if self.timetable else {}
+        return arrays | self.lists.save() | begin.surroundings(self.model)
 
     def load(self, state: Fields) -> None:
         """Restore a saved state, bit for bit."""
@@ -175,6 +179,28 @@ class DemBodies(Component):
         self.stepping.load(state)
         self.loaded = bool(np.any(state["load"]))
         self.accumulated = Accumulated(*state["accumulated"].tolist())
+        if self.timetable:
+            self.timetable.load(state, self.state)
+
+    def begin_from(self, state: Fields) -> None:
+        """Begin from the state of another run, with the planes, materials and locks of this one."""
+        if self.timetable:
+            self.timetable.restart(self.state)
+            state = {**state, **self.timetable.save()}
+        has_rolling = self.lists.balls is not None and self.lists.balls.rolling_moment is not None
+        lists = begin.Lists(has_rolling, self.params.contact_forces)
+        parts = (self.bodies, self.solids, self.model)
+        fitted, changed = begin.fitted(state, *parts, lists)
+        self.load(fitted)
+        self.accumulated = Accumulated()
+        if changed:
+            self.begun = False
+            try:
+                self._begin()
+            except StepError as error:
+                raise SceneError(
+                    f"the state that it begins from cannot be gone on with: {error}"
+                ) from error
 
     def warnings(self) -> dict[str, str]:
         """Warn of contacts that few steps resolved, and of deep overlaps."""
@@ -196,7 +222,8 @@ class DemBodies(Component):
         model, state = self.stepping.whole("motion")
         if not self.stepping.answers:
             return {}
-        return planes_view(model.plane, (self.begun_in, extent(state)))
+        planes = model.plane[model.plane[:, 3] > rows.GONE]
+        return planes_view(planes, (self.begun_in, extent(state)))
 
     def items(self) -> int:
         """Count the bodies."""

@@ -13,6 +13,7 @@ from quintet.components.dem_bodies.ranks.one import OneRank
 from quintet.components.dem_bodies.shapes.copies import Bodies
 from quintet.components.dem_bodies.shapes.solid import Solid, contact_length
 from quintet.components.dem_bodies.state import Model, State
+from quintet.components.dem_bodies.timetable import Timetable, has_changes
 from quintet.interfaces.component import Resources
 from quintet.interfaces.errors import SceneError
 
@@ -53,6 +54,11 @@ def stepping(
     rows = RowsOfRank(model, state, bodies.kind_of_each(np.int32), shares)
     shared_lists = SharedLists(rows, balls, skin, params.contact_forces)
     return SeveralRanks(rows, shared_lists, resources.threads)
+
+
+def timetable(params: DemBodiesParams, bodies: Bodies, model: Model) -> Timetable | None:
+    """Planes that vanish and bodies that are released; None where all stays."""
+    return Timetable(params, bodies, model) if has_changes(params, bodies) else None
 
 
 def step_limit(

@@ -124,6 +124,8 @@ class BodyPairs(NamedTuple):
     geometry: Numbers  # (pairs, 11) normal, point [m], depth [m], R* [m], force [N]
 
 
+GONE = -1e15  # m, offset of a plane that has vanished: everything is far above it
+
 # Columns of motion.
 RADIUS, VELOCITY, OMEGA, END_VELOCITY, END_OMEGA, COLUMNS = 3, 4, 7, 10, 13, 16
 

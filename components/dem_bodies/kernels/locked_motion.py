@@ -144,6 +144,17 @@ def free_inverse_mass(model: Model, i: int, n: Vector) -> float:
 
 
 @njit(**EXACT)
+def write_free_rotation(model: Model, state: State, i: int) -> None:
+    """Write the angular momentum and the inverse inertia of a body whose locks have changed."""
+    r = matrix(quaternion(state.orientation.reshape(-1), 4 * i))
+    momentum = times(world_inertia(model.inertia, i, r), row_vector(state.motion, i, OMEGA))
+    set_row_vector(state.angular_momentum, i, 0, masked(model.free, i, 3, momentum))
+    inverse = free_inverse_inertia(model, i, r)
+    for k in range(6):
+        state.world_inverse_inertia[i, k] = inverse[k]
+
+
+@njit(**EXACT)
 def write_momenta_of_locked(model: Model, state: State, momenta: Numbers) -> None:
     """Write R I Rᵀ ω [kg m²/s], of which the state keeps the free components only, into rows."""
     for i in range(momenta.shape[0]):

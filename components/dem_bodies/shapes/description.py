@@ -91,7 +91,12 @@ def _from_origin(body: Any, centre: Array) -> dict[str, Any]:
 
 
 def check_locked(where: str, body: RigidBody) -> None:
-    """Refuse locks that are named twice, and a rotation that locks would have to force."""
+    """Refuse locks that are named twice, a rotation that they would have to force, and no lock."""
+    if body.released_at is not None and not body.locked:
+        raise ValueError(
+            f"{where}.released_at must be of a body that is locked until then; found no locked. "
+            "Name its locked directions, or leave released_at out."
+        )
     if len(set(body.locked)) < len(body.locked):
         raise ValueError(
             f"{where}.locked must name each direction once; found {', '.join(body.locked)}. Leave "

@@ -74,11 +74,14 @@ class Plane:
         Towards the free side; of any length.
     material
         One of the materials.
+    until : s
+        When it vanishes; it stays if not given.
     """
 
     point: Vector
     normal: Vector
     material: str
+    until: Positive | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -104,4 +107,5 @@ class RigidBody:
     velocity: Vector  # m/s
     angular_velocity: Vector  # rad/s
     locked: tuple[str, ...]
+    released_at: float | None  # s
     copies: Copies | None
