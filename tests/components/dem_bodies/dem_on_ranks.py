@@ -47,10 +47,30 @@ def with_boxes():
     return table
 
 
+def begun():
+    """They begin elsewhere, with a floor that vanishes, a box that is let go, and less friction."""
+    table = heap(9, 9, 12, friction=0.1)
+    table["planes"] = [*PLANES[1:], {**PLANES[0], "until": 1e-3}]
+    held = {"locked": ["x", "y", "z", "rotation_x", "rotation_y", "rotation_z"]}
+    table["bodies"].append(box((0.1, 0.1, 0.31), (0.05, 0.05, 0.05), **held, released_at=5e-4))
+    return table
+
+
+def state_elsewhere():
+    """State of the same bodies on one rank, with another friction and other planes."""
+    table = begun() | heap(9, 9, 12, friction=0.5) | {"bodies": begun()["bodies"]}
+    params, _ = read(DemBodiesParams, table, "begun")
+    bodies = DemBodies(params)
+    for _ in range(40):
+        bodies.step(bodies.stable_dt())
+    return bodies.save()
+
+
 SCENES = {
     "heap": lambda: heap(10, 10, 12),
     "rolling": lambda: heap(9, 9, 13, rolling_friction=0.1) | {"contact_forces": True},
     "boxes": with_boxes,
+    "begun": begun,
 }
 
 
@@ -61,6 +81,8 @@ class Run(SolverRun):
         params, _ = read(DemBodiesParams, SCENES[self.name](), self.name)
         bodies = DemBodies(params, Resources(communicator=COMMUNICATOR))
         bodies.bind({}, frozenset(port.name for port in bodies.takes + bodies.gives))
+        if self.name == "begun":
+            bodies.begin_from(state_elsewhere())
         return bodies
 
     def inputs(self):

@@ -15,7 +15,7 @@ from quintet.interfaces.errors import SceneError
 
 pytestmark = pytest.mark.mpi
 PROGRAM = Path(__file__).with_name("dem_on_ranks.py")
-NAMES = ("heap", "rolling", "boxes")
+NAMES = ("heap", "rolling", "boxes", "begun")
 STEPS = 60  # in which pairs are listed again, and rows change their rank
 folder = from_the_start(PROGRAM, NAMES, STEPS)
 resumed = from_states(PROGRAM, NAMES, 30)

@@ -74,6 +74,24 @@ def test_water_and_a_body_go_on_with_the_same_bits(tmp_path):
     assert is_the_end_of(*reversed(stages))
 
 
+@pytest.mark.parametrize("scheme", ["serial", "iterated"])
+def test_toys_in_a_group_go_on_with_the_same_bits(tmp_path, scheme):
+    scene = write_scene(tmp_path, ping="substeps = 4", pong="substeps = 2")
+    lines = ["[groups.both]", 'members = ["ping", "pong"]', "window = 5e-4"]
+    scene.write_text("\n".join([scene.read_text(), *lines, f'scheme = "{scheme}"']))
+    stages = two_stages(scene, tmp_path, 0.03)
+    assert is_the_end_of(*reversed(stages))
+
+
+def test_components_that_are_not_named_start_as_they_are_described(tmp_path):
+    scene = write_scene(tmp_path)
+    first = run(scene, tmp_path / "first", "end=0.03", "output.states=[1.0]")
+    begin = f'begin_from={{run="{first}", components=["ping"]}}'
+    before, after = rows(first), rows(run(scene, tmp_path / "again", begin, "end=0.01"))
+    assert np.array_equal(after["ping/out.number"][0], before["ping/out.number"][-1])
+    assert np.array_equal(after["pong/out.number"][0], before["pong/out.number"][0])
+
+
 def test_time_begins_at_0_and_the_books_close(tmp_path):
     scene = write_scene(tmp_path)
     _, again = two_stages(scene, tmp_path, 0.03)
