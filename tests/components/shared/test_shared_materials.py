@@ -18,6 +18,7 @@ from quintet.components.shared.materials.params import (
     material,
 )
 from quintet.components.shared.materials.solid import densest, solid
+from quintet.interfaces.materials.library import library
 from quintet.interfaces.params import parameters, read
 
 PLASTIC = ["42CrMo4", "Ti-6Al-4V", "aluminium", "copper", "steel"]
@@ -95,6 +96,18 @@ def test_the_equation_of_state_has_its_hugoniot(name, speed, shock, pressure):
     p = _pressure(us / (us - u) - 1.0, 0.5 * u * u, law)
     assert p == pytest.approx(law.density * us * u, rel=1e-12)
     assert p == pytest.approx(pressure, rel=1e-3)
+
+
+@pytest.mark.parametrize("name", [name for name in library() if "mie_gruneisen" in library()[name]])
+def test_every_shocked_material_of_the_library_has_the_hugoniot_of_its_source(name):
+    law, eos_table = solid(material(name)), library()[name]["mie_gruneisen"]
+    u = 300.0  # m/s, behind the shock
+    linear = eos_table["sound_speed"] + eos_table["s1"] * u
+    us = 0.5 * linear + math.sqrt(0.25 * linear**2 + eos_table.get("s2", 0.0) * u * u)
+    # Grüneisen's coefficient as of LS-DYNA makes the locus of the reference that of Rankine and
+    # Hugoniot, whatever its change with compression.
+    p = _pressure(us / (us - u) - 1.0, 0.5 * u * u, law)
+    assert p == pytest.approx(library()[name]["density"] * us * u, rel=1e-12)
 
 
 def test_a_hugoniot_with_three_coefficients(name="steel"):
