@@ -1,11 +1,16 @@
 """Commands that start no solver: list, check, describe, materials, schema."""
 
 import argparse
+import tempfile
 from pathlib import Path
 
 from quintet.coupler.cli.options import IMPORT, Command, add_scene, load_scene
 
 GRAPH = "draw components, ports and links instead of the plan"
+PICTURE = (
+    "also build all components, without a step, and draw what they show from three sides into this "
+    "file"
+)
 MERMAID = "print the graph as a Mermaid flowchart"
 SUBJECT = (
     "scene, a kind, or link and its kind; then a table or key of it (default: list all subjects)"
@@ -20,6 +25,8 @@ def add_commands(command: Command) -> None:
     plan = command("check", check, "check a scene and print its plan, without a run")
     add_scene(plan)
     plan.add_argument("--import", action="store_true", dest="imports", help=IMPORT)
+    plan.add_argument("--picture", type=Path, metavar="FILE", help=PICTURE)
+    plan.add_argument("--force", action="store_true", help="replace the picture")
     shape = plan.add_mutually_exclusive_group()
     shape.add_argument("--graph", action="store_true", help=GRAPH)
     shape.add_argument("--mermaid", action="store_true", help=MERMAID)
@@ -60,7 +67,32 @@ def check(options: argparse.Namespace) -> int:
         tell_unread(scene)
     else:
         print_plan(scene, console())
+    if options.picture:
+        _draw_start(options)
     return 0
+
+
+def _draw_start(options: argparse.Namespace) -> None:
+    """Draw what a scene shows at its start, from three sides."""
+    # Start-up: only this picture needs it.
+    from quintet.coupler.report.free_place import free_place
+    from quintet.coupler.report.panels import can_draw
+    from quintet.coupler.report.redraw import FORMATS
+    from quintet.coupler.report.three_views import draw_three_views
+    from quintet.coupler.run.first_view import write_first_view
+
+    place = free_place(options.picture, options.picture, FORMATS, options.force, "--picture")
+    if not can_draw():
+        return
+    options.transport = "memory"  # nothing travels: all components are built here
+    scene = load_scene(options)
+    with tempfile.TemporaryDirectory() as folder:
+        if not write_first_view(scene, Path(folder)):
+            print("quintet: no picture: no component has anything to show.", flush=True)
+            return
+        colours = tuple(scene.file.output.colours)
+        draw_three_views(Path(folder), place, colours, f"{scene.headline} at the start")
+    print(f"picture: {place}", flush=True)
 
 
 def describe(options: argparse.Namespace) -> int:

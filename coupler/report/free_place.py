@@ -6,8 +6,10 @@ from pathlib import Path
 from quintet.interfaces.errors import SceneError
 
 
-def free_place(ours: Path, out: Path | None, formats: Sequence[str], force: bool) -> Path:
-    """Choose the file of `--out`, or `ours` where there is none; refuse one that is there.
+def free_place(
+    ours: Path, out: Path | None, formats: Sequence[str], force: bool, option: str = "--out"
+) -> Path:
+    """Choose the file of an option, or `ours` where there is none; refuse one that is there.
 
     `formats` are the endings that it may have.
     """
@@ -15,9 +17,9 @@ def free_place(ours: Path, out: Path | None, formats: Sequence[str], force: bool
         return ours
     if out.suffix.lower() not in formats:
         raise SceneError(
-            f"--out {out}: it must end with one of {', '.join(formats)}; found "
+            f"{option} {out}: it must end with one of {', '.join(formats)}; found "
             f"{out.suffix or 'no ending'}. Name another file."
         )
     if out.exists() and not force:
-        raise SceneError(f"--out {out}: it exists. Name another file, or use --force.")
+        raise SceneError(f"{option} {out}: it exists. Name another file, or use --force.")
     return out

@@ -95,9 +95,9 @@ def draw_run(run: Path, out: Path, picture: Picture, title: str = "") -> Path:
     if not files or not len(picture.times):
         raise SceneError(f"run {run}: a picture needs a .vtkhdf file with steps, and a time.")
     instants, viewpoint = moments(files, picture.times), picture.viewpoint
-    cut, views = _views(files, instants, picture)
+    cut, views = turned_views(files, instants, picture)
     still = [viewpoint.turned_wall(wall) for wall in walls(run)]
-    low, high = _limits(views, still, picture.region and viewpoint.turned_box(picture.region))
+    low, high = limits(views, still, picture.region and viewpoint.turned_box(picture.region))
     wide, tall = high - low
     stretch = max(1.0, wide / tall * LOWEST)
     text = f"{title}\n{_said(picture, cut, stretch)}".strip()
@@ -113,12 +113,12 @@ def draw_run(run: Path, out: Path, picture: Picture, title: str = "") -> Path:
         panel.locator_params(axis="x", nbins=_ticks(figure, panel))
         draw_walls(panel, still)
         draw_view(panel, view, scales, sizes)
-    _add_colour_bars(figure, panels, scales, views)
+    add_colour_bars(figure, panels, scales, views)
     add_legend(figure, views[0], still)
     return save(figure, out)
 
 
-def _views(
+def turned_views(
     files: Sequence[Path], instants: Sequence[float], picture: Picture
 ) -> tuple[Cut, list[list[Shown]]]:
     """Read what all components show at some times, turned, cut, and sorted by depth."""
@@ -156,7 +156,7 @@ def _cut(picture: Picture, views: Sequence[Sequence[Shown]]) -> Cut:
     return Cut(depth, infinite, text, keeps_spheres=True)
 
 
-def _add_colour_bars(
+def add_colour_bars(
     figure: Any, panels: Sequence[Any], scales: Mapping[Any, Any], views: Sequence[Sequence[Shown]]
 ) -> None:
     """Say beside the panels what colours stand for."""
@@ -187,7 +187,7 @@ def _ticks(figure: Any, panel: Any) -> int:
     return max(2, int(1.2 * figure.get_figwidth() / panel.get_subplotspec().get_gridspec().ncols))
 
 
-def _limits(
+def limits(
     views: Sequence[Sequence[Shown]], still: Sequence[Still], region: tuple[Array, Array] | None
 ) -> tuple[Array, Array]:
     """Lowest and highest corner (2,) m, right and up, of all panels: what moves, and walls."""
