@@ -7,6 +7,7 @@ from pydantic import NonNegativeInt
 from quintet.components.shared.geometry.bounds import Bounds
 from quintet.components.sph_fluid.setup import checks
 from quintet.components.sph_fluid.setup.boundary import Boundary
+from quintet.components.sph_fluid.setup.boundary_meshes import Filling
 from quintet.components.sph_fluid.setup.gauge_places import Gauges
 from quintet.components.sph_fluid.setup.geometry import Face, Smoothing, levels
 from quintet.components.sph_fluid.setup.initial import InitialFields
@@ -155,6 +156,8 @@ class SphFluidParams:
             from quintet.components.sph_fluid.setup.shape_checks import check_shapes
 
             check_shapes(self.fluid, boundary.solids, spacing, dimensions)
+        if boundary.meshes:
+            self._check_meshes()
         if self.initial is not None:
             self.initial.check(self.extents, self.density, self.wave is not None)
         if self.wave is not None:
@@ -174,6 +177,26 @@ class SphFluidParams:
                 f"found acoustic_damper {self.acoustic_damper} and integration "
                 f"{self.integration}. Set integration, or remove acoustic_damper."
             )
+
+    def _check_meshes(self) -> None:
+        """Boundaries from files suit the fluid."""
+        # Left out of scenes without them, and of those without other shapes.
+        from quintet.components.sph_fluid.setup.mesh_checks import check_meshes, region_points
+
+        places = region_points(self.fluid, self.spacing)
+        gauges = self.gauges.pressure_gauges
+        check_meshes(self.boundary, self.mesh_filling, self.dimensions, places, gauges)
+
+    @property
+    def mesh_filling(self) -> Filling:
+        """How wall particles are placed behind boundaries from files."""
+        dry = [
+            ("xyz".index(face[0]), self.boundary.tank["-+".index(face[1])]["xyz".index(face[0])])
+            for face in (self.closed_faces if self.boundary.tank else ())
+            if self.boundary.tank
+        ]
+        reach = 2.0 * self.smoothing_length  # the radius of the kernel
+        return Filling(self.spacing, reach, self.boundary.wall_offset, tuple(dry))
 
     @property
     def boxes(self) -> tuple[Bounds, ...]:
@@ -199,7 +222,15 @@ class SphFluidParams:
     def notes(self) -> tuple[str, ...]:
         """What a user should read of the mass of particles and of viscosity."""
         masses = mass_notes(self.fluid, self.spacing, self.dimensions)
-        return *masses, *self.viscosity.notes
+        return *masses, *self.viscosity.notes, *self._mesh_notes()
+
+    def _mesh_notes(self) -> tuple[str, ...]:
+        if not self.boundary.meshes:
+            return ()
+        # Left out of scenes without boundaries from files.
+        from quintet.components.sph_fluid.setup.mesh_checks import mesh_notes
+
+        return mesh_notes(self.boundary.meshes, self.mesh_filling)
 
     @property
     def particle_volume(self) -> float:

@@ -1,6 +1,6 @@
 """What a fluid will need: its particles, counted without making them, and time; numpy alone."""
 
-from quintet.components.sph_fluid.boundary.obstacles import count_obstacle_points
+from quintet.components.sph_fluid.boundary.obstacles import count_obstacle_points, from_meshes
 from quintet.components.sph_fluid.boundary.walls import count_wall_points
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.setup.mass import region_masses
@@ -20,7 +20,8 @@ def plan(params: SphFluidParams) -> Plan:
 
 
 def particles(params: SphFluidParams) -> int:
-    """Fluid and wall particles, counted without making any."""
+    """Fluid and wall particles, counted without making any but those from files."""
     regions = region_masses(params.fluid, params.spacing, params.dimensions)
     fluid = sum(region.particles for region in regions)
-    return fluid + count_obstacle_points(params) + count_wall_points(params)
+    still = count_obstacle_points(params) + count_wall_points(params)
+    return fluid + still + len(from_meshes(params)[0])

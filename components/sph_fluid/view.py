@@ -22,8 +22,19 @@ def view(state: State) -> Fields:
 
 
 def wall_faces(params: SphFluidParams) -> list[Array]:
-    """Corners (4, 3) m of each closed face of the tank, and of each face of the obstacles."""
+    """Corners (k, 3) m of the tank's closed faces, and of faces of obstacles and of meshes."""
     boundary = params.boundary
     faces = box(*boundary.tank, params.closed_faces) if boundary.tank else []
     sides = [face for face in FACES if params.dimensions == 3 or face[0] != "y"]
-    return faces + [face for bounds in boundary.solids for face in box(*bounds, sides)]
+    faces += [face for bounds in boundary.solids for face in box(*bounds, sides)]
+    return faces + _faces_of_meshes(params)
+
+
+def _faces_of_meshes(params: SphFluidParams) -> list[Array]:
+    """Triangles (3, 3) m of all surfaces from files."""
+    if not params.boundary.meshes:
+        return []
+    # Left out of scenes without boundaries from files.
+    from quintet.components.sph_fluid.setup.mesh_surfaces import placed
+
+    return [triangle for mesh in params.boundary.meshes for triangle in placed(mesh).corner]

@@ -22,7 +22,7 @@ from quintet.components.sph_fluid.boundary.kernels.mirrored_density import (
     extrapolate_density,
     mirror_velocity,
 )
-from quintet.components.sph_fluid.boundary.obstacles import obstacle_mirrors
+from quintet.components.sph_fluid.boundary.obstacles import from_meshes, obstacle_mirrors
 from quintet.components.sph_fluid.boundary.samples import Samples
 from quintet.components.sph_fluid.boundary.symmetry_planes import SymmetryPlanes
 from quintet.components.sph_fluid.boundary.walls import wall_mirrors
@@ -56,8 +56,8 @@ class MirroredBoundary:
 
     def start(self, state: State) -> None:
         """Mirror the walls."""
-        mirrors = [wall_mirrors(self.params), obstacle_mirrors(self.params)]
-        state.mirror_point = np.concatenate(mirrors)
+        walls, obstacles = wall_mirrors(self.params), obstacle_mirrors(self.params)
+        state.mirror_point = np.concatenate([walls, obstacles, from_meshes(self.params)[1]])
 
     def join(self, state: State, static: Fields) -> None:
         """Make room for mirror points; find which samples the contact potential is chosen for."""

@@ -64,6 +64,20 @@ def obstacle_mirrors(params: SphFluidParams) -> Array:
     return np.concatenate(parts)
 
 
+def from_meshes(params: SphFluidParams) -> tuple[Array, Array]:
+    """Particles (n, 3) m behind all surfaces from files, and their images (n, 3) m."""
+    none = np.zeros((0, 3))
+    if not params.boundary.meshes:
+        return none, none
+    # Left out of scenes without boundaries from files.
+    from quintet.components.sph_fluid.setup.mesh_points import mesh_points
+
+    filling = params.mesh_filling
+    pairs = [mesh_points(mesh, filling) for mesh in params.boundary.meshes]
+    points, images = (np.concatenate(arrays) for arrays in zip(*pairs, strict=True))
+    return points, images
+
+
 def _points(box: Bounds, params: SphFluidParams) -> tuple[Array, Array]:
     """Particles (n, 3) m of one obstacle, and how deep below each wet face [m]; (2, n, 3)."""
     steps, low, high, _, wet = _rows(box, params)

@@ -5,6 +5,7 @@ from typing import ClassVar, Literal
 
 from quintet.components.shared.geometry.bounds import Bounds
 from quintet.components.shared.geometry.shapes import Box
+from quintet.components.sph_fluid.setup.boundary_meshes import BoundaryMesh
 from quintet.components.sph_fluid.setup.geometry import FACES, Exponent, Face, UprightFace
 from quintet.interfaces.params import Fraction, NotNegative, Positive, Vector, parameters
 
@@ -29,6 +30,8 @@ class Boundary:
         Velocities of faces that move in their own planes, like belts.
     obstacles
         Boxes that stand still in the tank.
+    meshes
+        Tanks and obstacles from files, with or without walls; in three dimensions.
     wall_offset : 1
         Spacings from a wall's face out to its first particles; 0.5 with mdbc.
     sample_depth : 1
@@ -60,6 +63,7 @@ class Boundary:
     symmetry: tuple[UprightFace, ...] = ()
     wall_velocity: dict[Face, Vector] = field(default_factory=dict)
     obstacles: tuple[Box, ...] = ()
+    meshes: tuple[BoundaryMesh, ...] = ()
     wall_offset: Positive = 0.5
     sample_depth: NotNegative = 0.5
     wall_viscosity_factor: Fraction = 1.0

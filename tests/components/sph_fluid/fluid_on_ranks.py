@@ -1,6 +1,8 @@
 """What test_sph_fluid_ranks.py runs on several ranks; rank 0 writes what came out."""
 
 import re
+import tempfile
+from pathlib import Path
 
 import numpy as np
 from fluid_params import fluid_params
@@ -21,6 +23,8 @@ GAUGES = {
     "gauges__front_gauge": "x",
     "gauges__motion_gauge": True,
 }
+BLOCK = Path(tempfile.mkdtemp()) / "block.npy"  # of voxels, in the way of the water
+np.save(BLOCK, np.ones((2, 1, 2)))
 PARAMS = {
     "dam": {
         "boundary__method": "dbc",
@@ -63,6 +67,14 @@ PARAMS = {
         "density_diffusion": 0.1,
         "shepard_every": 9,
         "viscosity__kinematic": 1e-3,
+        **GAUGES,
+    },
+    "block": {  # from a file
+        "boundary__method": "mdbc",
+        "boundary__walls": TANK,
+        "boundary__meshes": [{"file": str(BLOCK), "scale": 0.2, "origin": [0.8, 0.1, 0.0]}],
+        "fluid": [DAM],
+        "density_diffusion": 0.1,
         **GAUGES,
     },
     "spilling": {  # over an edge, and out of the domain

@@ -1,0 +1,153 @@
+"""What concerns boundaries from files; imported only by a scene that has some."""
+
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+import numpy as np
+
+from quintet.components.shared.geometry.lattice import fill_box
+from quintet.components.sph_fluid.setup.boundary import Boundary
+from quintet.components.sph_fluid.setup.boundary_meshes import BoundaryMesh, Filling
+from quintet.components.sph_fluid.setup.geometry import cells
+from quintet.components.sph_fluid.setup.mesh_points import mesh_points, surface
+from quintet.components.sph_fluid.setup.mesh_surfaces import FAR, Surface
+from quintet.components.sph_fluid.setup.shape_filling import fill_shape
+from quintet.components.sph_fluid.setup.shapes import Fluid
+from quintet.interfaces.component import Array
+from quintet.interfaces.params import Vector
+
+THIN = 2.0  # spacings that what is behind a surface must be thick
+APART = 0.25  # spacings that fluid must be before a surface: nearer, it is thrown away from it
+NEAR = 0.5  # spacings between wall particles of two surfaces that do not overlap
+
+
+def check_meshes(
+    boundary: Boundary,
+    filling: Filling,
+    dimensions: int,
+    fluid: Iterable[Array],
+    gauges: Sequence[Vector],
+) -> None:
+    """Surfaces are sound and thick enough, have no fluid behind them, and do not overlap.
+
+    Parameters
+    ----------
+    boundary
+    filling
+    dimensions
+    fluid : arrays (n, 3) m
+        Particles of each region of fluid.
+    gauges : (n, 3) m
+        Places of gauges of pressure.
+    """
+    _check_options(boundary, dimensions)
+    regions, filled = list(fluid), list[tuple[str, Array]]()
+    for number, mesh in enumerate(boundary.meshes):
+        name = f"boundary.meshes[{number}]"
+        try:
+            behind = surface(mesh, filling)
+            _check_thickness(name, behind)
+            points, _ = mesh_points(mesh, filling)
+        except ValueError as error:
+            text = str(error)
+            raise ValueError(text if text.startswith(name) else f"{name}: {text}") from error
+        for k, places in enumerate(regions):
+            _check_fluid(name, f"fluid[{k}]", behind, places)
+        _check_gauges(name, behind, gauges)
+        for other, earlier in filled:
+            _check_apart(name, points, other, earlier, filling.spacing)
+        filled.append((name, points))
+
+
+def region_points(fluid: Fluid, spacing: float) -> list[Array]:
+    """Particles (n, 3) m of each region of fluid in three dimensions, not staggered."""
+    return [
+        fill_box(region.bounds, cells(region.bounds, spacing, 3))
+        if region.shape == "box"
+        else fill_shape(region, spacing, False)
+        for region in fluid
+    ]
+
+
+def _check_options(boundary: Boundary, dimensions: int) -> None:
+    wrong = ""
+    if dimensions == 2:
+        wrong = "dimensions 2. Set dimensions to 3, or use obstacles"
+    elif boundary.method == "potential":
+        wrong = "boundary.method potential. Use mdbc or dbc"
+    elif boundary.symmetry:
+        wrong = f"boundary.symmetry {list(boundary.symmetry)}. Leave one of the two out"
+    elif boundary.lubrication_films is True:
+        wrong = "lubrication_films, which are not known there. Leave one of the two out"
+    if wrong:
+        raise ValueError(
+            "boundary.meshes are walls in three dimensions, without planes of symmetry, films or "
+            f"the contact potential; found {wrong}."
+        )
+
+
+def _check_thickness(name: str, behind: Surface) -> None:
+    least, where = behind.thinnest()
+    if least < (THIN - 1e-6) * behind.spacing:
+        raise ValueError(
+            f"{name} must have {THIN:g} spacings, {THIN * behind.spacing:g} m, or more of solid "
+            f"behind each face, or the surface overlaps itself; found {least:.3g} m behind "
+            f"{np.array2string(where, precision=4)} m. Refine the spacing, thicken it, or choose "
+            "the other fluid_side."
+        )
+
+
+def _check_fluid(name: str, region: str, behind: Surface, places: Array) -> None:
+    below, _ = behind.depths(places)
+    wrong = np.flatnonzero(below > -APART * behind.spacing)
+    if len(wrong):
+        deepest = float(below.max())
+        where = np.array2string(places[np.argmax(below)], precision=4)
+        found = f"{deepest:.3g} m behind" if deepest > 0.0 else f"{-deepest:.3g} m before"
+        found = "far behind" if deepest >= FAR else found
+        raise ValueError(
+            f"{name} must have all fluid {APART:g} spacings, {APART * behind.spacing:g} m, or more "
+            f"before it; found {len(wrong)} of {len(places)} particles of {region} behind or "
+            f"nearer, one {found}, at {where} m. Cut the fluid, or choose the other fluid_side."
+        )
+
+
+def _check_gauges(name: str, behind: Surface, gauges: Sequence[Vector]) -> None:
+    if not gauges:
+        return
+    below, _ = behind.depths(np.array(gauges))
+    wrong = np.flatnonzero(below > 1e-6 * behind.spacing)
+    if len(wrong):
+        raise ValueError(
+            f"gauges.pressure_gauges[{wrong[0]}] must not be behind {name}; found "
+            f"{tuple(gauges[wrong[0]])} m. Move the gauge into the fluid."
+        )
+
+
+def _check_apart(name: str, points: Array, other: str, earlier: Array, spacing: float) -> None:
+    # Left out of scenes with one surface.
+    from scipy.spatial import cKDTree
+
+    distance, _ = cKDTree(earlier).query(points, distance_upper_bound=NEAR * spacing)
+    if count := int(np.isfinite(distance).sum()):
+        raise ValueError(
+            f"{name} must not overlap {other}; {count} of its {len(points)} wall particles stand "
+            f"nearer than {NEAR:g} spacings to others of it. Unite both in one file."
+        )
+
+
+def mesh_notes(meshes: Iterable[BoundaryMesh], filling: Filling) -> tuple[str, ...]:
+    """Sizes of surfaces, their particles, and the rims of open ones."""
+    notes = []
+    for number, mesh in enumerate(meshes):
+        whole = surface(mesh, filling).whole
+        x, y, z = np.ptp(whole.corner, axis=(0, 1)).tolist()
+        points, _ = mesh_points(mesh, filling)
+        text = (
+            f"boundary.meshes[{number}], {Path(mesh.path).name}: {len(whole.corner)} triangles, "
+            f"{x:.4g} x {y:.4g} x {z:.4g} m, {len(points)} wall particles"
+        )
+        if mesh.surface == "open":
+            text += f"; its rims have {whole.rims} edges, and a hole in it would be one"
+        notes.append(f"{text}.")
+    return tuple(notes)

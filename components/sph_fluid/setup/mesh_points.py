@@ -1,0 +1,102 @@
+"""Wall particles behind surfaces from files, in layers as those of moving bodies.
+
+Imported only by a scene that has some.
+"""
+
+import math
+from functools import lru_cache, partial
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from quintet.components.shared.geometry.surface_samples_closed import (
+    Body,
+    Depths,
+    fill_closed,
+)
+from quintet.components.sph_fluid.setup.boundary_meshes import BoundaryMesh, Filling
+from quintet.components.sph_fluid.setup.mesh_surfaces import FAR, SAME, Surface
+from quintet.interfaces.component import Array
+
+GAP = 0.75  # spacings: places of a layer further than this from all particles get one
+
+
+@lru_cache(maxsize=16)
+def surface(mesh: BoundaryMesh, filling: Filling) -> Surface:
+    """Make a surface ready to be measured."""
+    return Surface(mesh, filling.spacing, filling.reach, filling.dry)
+
+
+@lru_cache(maxsize=16)
+def mesh_points(mesh: BoundaryMesh, filling: Filling) -> tuple[Array, Array]:
+    """Particles (n, 3) m behind a surface, x fastest, and their images (n, 3) m in it."""
+    behind, spacing = surface(mesh, filling), filling.spacing
+    corner = behind.whole.corner
+    low, high = corner.min(axis=(0, 1)), corner.max(axis=(0, 1))
+    less, depths = (filling.offset - 0.5) * spacing, behind.depths
+    if mesh.is_solid:
+        low, high = _whole_spacings(low, high, spacing)
+        volume = behind.whole.volume
+    else:
+        low, high = _around(low, high, behind.reach, spacing)
+        layers = math.ceil((filling.reach - less) / spacing - SAME)
+        depths = partial(_down_to, behind, less + layers * spacing)
+        volume = _volume_behind(depths, low, high, spacing)
+    body = Body(depths, low, high, volume)
+    (points, _, _, images), _ = fill_closed(body, spacing, filling.reach - less, less)
+    if not mesh.is_solid:
+        points, images = _with_gaps_filled(points, images, behind, filling)
+    order = np.lexsort(np.round(points / (1e-6 * spacing)).T)
+    return points[order], images[order]
+
+
+def _with_gaps_filled(
+    points: Array, images: Array, behind: Surface, filling: Filling
+) -> tuple[Array, Array]:
+    """Add particles in gaps of bent layers, through which fluid would leave a tank."""
+    spacing, depth = filling.spacing, filling.offset * filling.spacing
+    while depth < filling.reach:
+        places = behind.piece - depth * behind.normal[behind.owner]
+        below, normal = behind.depths(places)
+        places = places[np.abs(below - depth) < SAME * spacing]
+        normal = normal[np.abs(below - depth) < SAME * spacing]
+        distance, _ = cKDTree(points).query(places)
+        order = np.argsort(-distance, kind="stable")
+        added: list[int] = []
+        for k in order[distance[order] > GAP * spacing].tolist():
+            apart = np.linalg.norm(places[added] - places[k], axis=1)
+            if apart.min(initial=np.inf) > GAP * spacing:
+                added.append(k)
+        points = np.concatenate([points, places[added]])
+        images = np.concatenate([images, places[added] + 2.0 * depth * normal[added]])
+        depth += spacing
+    return points, images
+
+
+def _whole_spacings(low: Array, high: Array, spacing: float) -> tuple[Array, Array]:
+    """Corners (3,) m of a box, exact along axes on which it is nearly whole spacings long."""
+    middle, length = 0.5 * (low + high), high - low
+    whole = spacing * np.round(length / spacing)
+    half = 0.5 * np.where(np.abs(length - whole) < SAME * spacing, whole, length)
+    return middle - half, middle + half
+
+
+def _around(low: Array, high: Array, reach: float, spacing: float) -> tuple[Array, Array]:
+    """Corners (3,) m of a box about another one, whole spacings long, so far [m] beyond it."""
+    middle = 0.5 * (low + high)
+    half = 0.5 * spacing * np.ceil((high - low + 2.0 * reach) / spacing)
+    return middle - half, middle + half
+
+
+def _down_to(behind: Surface, deepest: float, points: Array) -> tuple[Array, Array]:
+    """Depths and normals behind a surface, as if what is deeper [m] were before it."""
+    below, normal = behind.depths(points)
+    return np.where(below < deepest, below, -FAR), normal
+
+
+def _volume_behind(depths: Depths, low: Array, high: Array, spacing: float) -> float:
+    """Volume [m3] of whole layers behind a surface, by places of a lattice."""
+    axes = [np.arange(a + 0.25 * spacing, b, 0.5 * spacing) for a, b in zip(low, high, strict=True)]
+    places = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
+    below, _ = depths(places)
+    return float((below > 0.0).sum()) * (0.5 * spacing) ** 3
