@@ -168,7 +168,7 @@ def test_the_same_class_is_told_once():
     assert len(found) == len(set(found)) and "[groups.NAME.iteration]" not in found
     group = next(one for one in reference_of("scene").sections if one.head == "[groups.NAME]")
     assert group.keys[-1].meaning.endswith("Keys as in `[iteration]`.")
-    assert len(list(sections(SceneFile))) == 4
+    assert len(list(sections(SceneFile))) == 5
 
 
 def test_a_kind_is_described_with_its_ports(capsys):
