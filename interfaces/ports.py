@@ -111,6 +111,38 @@ FACE_ACTIVITY = Port("face_activity", fields=(ACTIVE,))
 GLUE_ACTIVITY = Port("glue_activity", fields=(ACTIVE,))
 NODE_MASS = Port("node_mass", fields=(Field("added", (), "kg"),))
 
+# Contact: particles or bodies touch the faces of a mesh. The mesh gives its faces and what the
+# stiffness of contact follows from; the other side computes the forces and gives their reaction on
+# the nodes. Forces follow from places at the begin of a window, at which the mesh is told of them;
+# velocities cross as displacements over the last window, so that work is counted by what moved.
+# Faces that erosion opens are listed from the start and inactive until then.
+PLACE = replace(POSITION, rate="")
+LAYER = (
+    Field("mass", (), "kg"),  # of each node
+    Field("modulus", (), "Pa"),  # K + 4G/3 behind each face
+    Field("thickness", (), "m"),  # of the element behind each face: volume over area
+    Field("step", (), "s"),  # one row: stable step of the mesh without contact
+)
+CONTACT_SURFACE = Port("contact_surface", fields=(PLACE, DISPLACEMENT_RATE), static=(*MESH, *LAYER))
+PLANAR_CONTACT_SURFACE = replace(CONTACT_SURFACE, static=(*CONTACT_SURFACE.static, DIMENSIONS))
+OPEN_FACES = Port("open_faces", fields=(ACTIVE,))  # whether each face is part of the surface now
+CONTACT_FACES = Port(
+    "contact_faces",
+    fields=(PLACE, DISPLACEMENT_RATE),
+    items="partner",
+    static=(
+        # Closed: the last node of a triangle stands twice, edges go forth and back.
+        Field("corner", (4,), "1", labels=True),
+        *LAYER,
+        Field("friction", (), "1"),  # of each face, Coulomb's coefficient
+        Field("stiffness", (), "1"),  # of each face, scale of the penalty stiffness
+        Field("safety", (), "1"),  # one row: share of the predicted stable step
+    ),
+)
+PLANAR_CONTACT_FACES = replace(CONTACT_FACES, static=(*CONTACT_FACES.static, DIMENSIONS))
+CONTACT_ACTIVITY = Port("contact_activity", fields=(ACTIVE,), items="partner")  # of each face
+CONTACT_LOAD = Port("contact_load", fields=(FORCE,), items="partner")  # on each node
+
 # Conduction: one side holds its wall at a temperature, the other answers with the heat that it
 # conducts away. Walls are points (the bath of a particle lattice), meshes take heat at nodes.
 NODE_TEMPERATURE = Port("node_temperature", fields=(TEMPERATURE,), static=MESH)

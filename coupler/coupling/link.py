@@ -63,6 +63,12 @@ class Demands:
         between two bars; it is then watched for swings instead of being stepped twice.
     reason : str
         Why, for whoever asks for something else.
+    judged : bool
+        Whether windows are judged by the error in time of what it carries; not where they are the
+        steps of both sides, which resolve no vibration of the highest frequency.
+    first : tuple of str
+        Two components, of which the first must step before the other under the scheme serial;
+        empty: any order.
     """
 
     equal_steps: bool = False
@@ -70,6 +76,8 @@ class Demands:
     relaxation: tuple[float, ...] = ()
     settles: bool = False
     reason: str = ""
+    judged: bool = True
+    first: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

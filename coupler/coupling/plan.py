@@ -103,6 +103,14 @@ def _refused_schemes(plan: CouplingPlan, exchange: Exchange, where: str) -> Iter
                 f"found {plan.scheme}: {demands.reason}. Change the scheme, or put the two in a "
                 "group of their own."
             )
+        if plan.scheme == "serial" and demands.first:
+            earlier, later = (plan.member_of(component) for component in demands.first)
+            order = list(plan.members)
+            if earlier and later and order.index(earlier) > order.index(later):
+                yield (
+                    f"{where}.order must have {earlier} before {later} for link {link.name}; found "
+                    f"{', '.join(order)}: {demands.reason}. Change the order."
+                )
         if demands.equal_steps and {transfer.giver, transfer.taker} != set(ends):
             yield (
                 f"link {link.name}: both sides must make equal steps; one of them is in a group. "

@@ -158,7 +158,7 @@ def judged(coupling: Coupling) -> dict[Key, str]:
     keys: dict[Key, str] = {}
     for number, link in enumerate(exchange.links):
         demands = link.demands()
-        if demands.relaxation or demands.settles:
+        if demands.relaxation or demands.settles or not demands.judged:
             continue
         crossing = [
             (transfer.giver, key)

@@ -17,7 +17,7 @@ from quintet.coupler.coupling.link import (
     Transfer,
 )
 from quintet.coupler.coupling.links.keys import Between, with_keys
-from quintet.coupler.coupling.links.port_checks import requires
+from quintet.coupler.coupling.links.port_checks import refuse_other_dimensions, requires
 from quintet.coupler.coupling.links.sampled_structures import (
     FACES_OF_A_MESH,
     RIGID_BODIES,
@@ -29,7 +29,6 @@ from quintet.interfaces.component import Fields, Port
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.params import parameters
 from quintet.interfaces.ports import (
-    DIMENSIONS,
     FACES,
     MIRRORED_SURFACE,
     MOTION,
@@ -88,7 +87,7 @@ def join(
         surface = next(port for port in ports[fluid][0] if port.name == SURFACE.name)
         mirrored = any(field.name == "mirror" for field in surface.fields)
         moving = next(port for port in ports[body][1] if port.name == motion.name)
-        _same_dimensions(name, {fluid: surface, body: moving})
+        refuse_other_dimensions(name, {fluid: surface, body: moving})
         contact = _contact(name, fluid, surface, potential)
         return Fsi(Sampling(name, fluid, body, mirrored, contact), structure, loaded)
     raise SceneError(
@@ -97,21 +96,6 @@ def join(
         f"{_names(ports[first][0])} and gives {_names(ports[first][1])}, {second} takes "
         f"{_names(ports[second][0])} and gives {_names(ports[second][1])}. Link others."
     )
-
-
-def _same_dimensions(name: str, ports: Mapping[str, Port]) -> None:
-    """Refuse a fluid of two dimensions beside bodies of three, and the reverse."""
-    planar = [
-        component
-        for component, port in ports.items()
-        if any(field.name == DIMENSIONS.name for field in (*port.static, *port.requests))
-    ]
-    if len(planar) == 1:
-        (solid,) = set(ports) - set(planar)
-        raise SceneError(
-            f"link {name}: both sides must have two dimensions or both three; {planar[0]} has two, "
-            f"{solid} has three. Set dimensions = 2 in both, or 3 in both."
-        )
 
 
 def _contact(name: str, fluid: str, surface: Port, potential: bool) -> float | None:

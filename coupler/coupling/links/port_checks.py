@@ -1,7 +1,11 @@
 """What the ports of a component lack for a role in a link."""
 
+from collections.abc import Mapping
+
 from quintet.coupler.coupling.link import Ports
 from quintet.interfaces.component import Port
+from quintet.interfaces.errors import SceneError
+from quintet.interfaces.ports import DIMENSIONS
 
 
 def requires(ports: Ports, name: str, takes: Port | None, gives: Port | None) -> list[str]:
@@ -44,3 +48,18 @@ def misfits(name: str, port: Port, needed: Port) -> list[str]:
         elif mine.kind != other.kind:
             wrong.append(f"{place} is a {mine.kind}, the other side's a {other.kind}")
     return wrong
+
+
+def refuse_other_dimensions(name: str, ports: Mapping[str, Port]) -> None:
+    """Refuse a side of two dimensions beside one of three."""
+    planar = [
+        component
+        for component, port in ports.items()
+        if any(field.name == DIMENSIONS.name for field in (*port.static, *port.requests))
+    ]
+    if len(planar) == 1:
+        (solid,) = set(ports) - set(planar)
+        raise SceneError(
+            f"link {name}: both sides must have two dimensions or both three; {planar[0]} has two, "
+            f"{solid} has three. Set dimensions = 2 in both, or 3 in both."
+        )
