@@ -1,0 +1,1 @@
+"""Contact of particles with the faces of a mesh."""

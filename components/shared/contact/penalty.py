@@ -1,0 +1,166 @@
+"""Contact of a component's particles with the faces of its partners' meshes, by penalty forces."""
+
+import math
+from dataclasses import astuple, dataclass
+
+import numpy as np
+
+from quintet.components.shared.contact.kernels import (
+    Loads,
+    Near,
+    Points,
+    Surface,
+    furthest_from,
+    list_near,
+    touch,
+)
+from quintet.components.shared.geometry.face_projection import cells_of
+from quintet.interfaces.component import Array, Fields
+
+PORT, ACTIVE, FORCE = "contact_faces", "contact_activity.active", "contact_load.force"
+POSITION, VELOCITY = f"{PORT}.position", f"{PORT}.velocity"
+HEAD = "contact/"  # of what is saved
+
+
+@dataclass(slots=True)
+class Numbers:
+    """What is summed over contacts, at the present time and so far."""
+
+    energy: float = 0.0  # J, held by springs
+    dissipated: float = 0.0  # J, by friction so far
+    rate: float = 0.0  # 1/s2, bound of what contact adds to the square of the highest frequency
+    deepest: float = 0.0  # m, of all penetrations so far
+    work: float = 0.0  # J, done on the particles by the motion of the faces so far
+    # J, that the kinetic energy lacks: velocities have none of the coming step's force yet, and at
+    # the present time should have half of it.
+    half_kick: float = 0.0
+    last: float = 0.0  # s, the last step
+
+    @property
+    def brought(self) -> float:
+        """Energy [J] that the particles' own lacks, less what the faces did on them."""
+        return self.half_kick + self.energy + self.dissipated - self.work
+
+
+class PenaltyContact:
+    """Faces of partners, what is near them, and the forces of what touches.
+
+    Parameters
+    ----------
+    static : mapping of arrays
+        Static fields of port `contact_faces`.
+    particles : int
+    radius : float, m
+        Of the largest particle: they touch a face at their radius, half a spacing.
+    """
+
+    def __init__(self, static: Fields, particles: int, radius: float) -> None:
+        of = {key.partition(".")[2]: np.array(array) for key, array in static.items()}
+        self.corner = np.ascontiguousarray(of["corner"], np.int64)
+        self.mass, self.radius = of["mass"], radius
+        self.faces = of["modulus"], of["thickness"], of["friction"], of["stiffness"]
+        self.safety, self.step_of_faces = float(of["safety"].min()), float(of["step"].min())
+        nodes = len(self.mass)
+        self.active = np.ones(len(self.corner))
+        self.position, self.velocity = np.zeros((nodes, 3)), np.zeros((nodes, 3))  # m, m/s
+        self.before = np.zeros((nodes, 3))  # m, places of nodes at the last step's begin
+        self.reaction = np.zeros((nodes, 3))  # N, on the nodes in the last step
+        self.slip = np.zeros((particles, 3))  # m, by the number of a particle
+        # m/s, by the same: what velocities at a step's end, which have none of the next force yet,
+        # lack to be those of that time.
+        self.kicked = np.zeros((particles, 3))
+        self.numbers = Numbers()
+        self.near: Near | None = None
+        self.slack = 0.0  # m, that particles and faces may still approach each other by
+
+    def take(self, fields: Fields) -> None:
+        """Take places of nodes at a step's begin, velocities that work counts, active faces."""
+        self.position = np.array(fields.get(POSITION, self.position))
+        self.velocity = np.array(fields.get(VELOCITY, self.velocity))
+        active = fields.get(ACTIVE, self.active)
+        if not np.array_equal(active, self.active):
+            self.active, self.near = np.array(active), None
+
+    def forget_rows(self) -> None:
+        """Forget what is near, as the rows of particles have changed."""
+        self.near = None
+
+    def kick(self, points: Points, dt: float) -> None:
+        """Change velocities by the forces at the begin of a step of dt [s]; note the reaction.
+
+        All of the step's impulse comes before its drift, on both sides of the contact: with forces
+        from the places of both at one time this is a leapfrog, which keeps energy bounded up to
+        ω dt = 2 (Hairer, Lubich & Wanner, Geometric Numerical Integration, section VI.3).
+        """
+        nodes, numbers, last = len(self.mass), self.numbers, self.numbers.last
+        moving = (self.position - self.before) / last if last else np.zeros((nodes, 3))
+        near = self._list(points, moving, last)
+        self.reaction, stiffness = np.zeros((nodes, 3)), np.zeros(nodes)
+        surface = Surface(self.corner, self.active, *self.faces, self.position, moving)
+        loads = Loads(self.reaction, stiffness, self.slip, self.kicked)
+        sums = touch(points, surface, near, last, dt, loads)
+        self.before, numbers.last = self.position.copy(), dt
+        numbers.work -= dt * float((self.reaction * self.velocity).sum())
+        numbers.energy, numbers.half_kick = sums.energy, sums.half_kick
+        numbers.dissipated += sums.dissipated
+        numbers.rate = max(sums.rate, float((stiffness / self.mass).max(initial=0.0)))
+        numbers.deepest = max(numbers.deepest, sums.depth)
+
+    def _list(self, points: Points, moving: Array, dt: float) -> Near:
+        """List the faces near particles, if they may have changed in the last step, of dt [s]."""
+        if self.near is not None:
+            mean = moving.mean(axis=0)
+            spread = furthest_from(points.velocity, mean) + furthest_from(moving, mean)
+            self.slack -= dt * spread
+            if self.slack >= 0.0:
+                return self.near
+        self.kicked[:] = 0.0
+        self.slack, place = self.radius, self.position
+        faces = np.flatnonzero(self.active)
+        if not len(faces) or not np.isfinite(place).all():
+            nothing = np.zeros(0, np.int64)
+            self.near = Near(nothing, np.zeros(1, np.int64), nothing)
+        else:
+            cells = cells_of(np.ascontiguousarray(place[self.corner[faces]]))
+            self.near = list_near(points.place, 2.0 * self.radius + self.slack, cells, faces)
+        return self.near
+
+    def stable_step(self, bound: float) -> float:
+        """Largest step [s] of particles in contact, of which those without have a bound [s].
+
+        Stiffnesses add up, so that ω² is at most the greater one of both sides, plus what contact
+        adds by its row sums (Gershgorin).
+        """
+        if not self.numbers.rate:
+            return math.inf
+        square = max((2.0 / bound) ** 2, (2.0 / self.step_of_faces) ** 2) + self.numbers.rate
+        return self.safety * 2.0 / math.sqrt(square)
+
+    def save(self) -> Fields:
+        """Copy out all state."""
+        return {
+            f"{HEAD}before": self.before.copy(),
+            f"{HEAD}reaction": self.reaction.copy(),
+            f"{HEAD}slip": self.slip.copy(),
+            f"{HEAD}kicked": self.kicked.copy(),
+            f"{HEAD}numbers": np.array(astuple(self.numbers)),
+        }
+
+    def load(self, state: Fields) -> None:
+        """Restore a saved state, bit for bit."""
+        self.before = np.array(state[f"{HEAD}before"])
+        self.reaction = np.array(state[f"{HEAD}reaction"])
+        self.slip = np.array(state[f"{HEAD}slip"])
+        self.kicked = np.array(state[f"{HEAD}kicked"])
+        self.numbers = Numbers(*state[f"{HEAD}numbers"].tolist())
+        self.near = None
+
+    def warnings(self) -> dict[str, str]:
+        """Warn of particles that passed through faces, or nearly did."""
+        if not self.numbers.deepest > self.radius:
+            return {}
+        return {
+            "contact": "particles must stay outside of the faces that they touch; one went "
+            f"{self.numbers.deepest:.3g} m deep, and beyond {2.0 * self.radius:.3g} m it would "
+            "pass through. Raise the link's stiffness, or refine both sides."
+        }

@@ -1,0 +1,210 @@
+"""Penalty contact of particles with faces: directions, reactions, stable step, friction."""
+
+import numpy as np
+import pytest
+
+from quintet.components.shared.contact.kernels import Points
+from quintet.components.shared.contact.penalty import PenaltyContact
+
+RADIUS, MODULUS, THICK = 0.5, 2.0, 1.0  # m, Pa, m
+# Two squares in the plane z = 0 that share an edge, and a wall that falls from the second's end.
+NODES = np.array(
+    [[0, 0, 0], [2, 0, 0], [4, 0, 0], [0, 2, 0], [2, 2, 0], [4, 2, 0], [4, 0, -2], [4, 2, -2]],
+    float,
+)
+FACES = np.array([[0, 1, 4, 3], [1, 2, 5, 4], [2, 6, 7, 5]])
+
+
+def _contact(particles, node=NODES, face=FACES, mass=1.0, friction=0.0, stiffness=1.0, safety=1.0):
+    count = len(face)
+    static = {
+        "corner": face.astype(float),
+        "mass": np.full(len(node), mass),
+        "modulus": np.full(count, MODULUS),
+        "thickness": np.full(count, THICK),
+        "friction": np.full(count, friction),
+        "stiffness": np.full(count, stiffness),
+        "safety": np.array([safety]),
+        "step": np.array([1e9]),
+    }
+    static = {f"contact_faces.{key}": array for key, array in static.items()}
+    return PenaltyContact(static, particles, RADIUS)
+
+
+def _take(contact, node=NODES, active=None):
+    contact.take({
+        "contact_faces.position": node,
+        "contact_faces.velocity": np.zeros_like(node),
+        "contact_activity.active": np.ones(len(contact.corner)) if active is None else active,
+    })  # fmt: skip
+
+
+def _points(place, velocity=None, mass=1.0):
+    place = np.array(place, float)
+    count = len(place)
+    velocity = np.zeros_like(place) if velocity is None else velocity
+    area, modulus = np.full(count, 1.0), np.full(count, MODULUS)
+    masses, radius = np.full(count, mass), np.full(count, RADIUS)
+    return Points(
+        place,
+        velocity,
+        np.arange(count),
+        masses,
+        area,
+        modulus,
+        radius,
+        np.zeros((0, 3)),
+        np.zeros(0),
+    )
+
+
+@pytest.mark.parametrize(
+    ("place", "direction", "depth"),
+    [
+        ((1.0, 1.0, 0.4), (0, 0, 1), 0.1),  # above a face
+        ((2.0, 1.0, 0.3), (0, 0, 1), 0.2),  # above the edge that two faces share
+        ((1.0, 1.0, -0.1), (0, 0, 1), 0.6),  # its centre below the face
+        ((4.3, 1.0, -1.0), (1, 0, 0), 0.2),  # beside the wall
+        ((4.2, 1.0, 0.2), (1, 0, 1), 0.5 - 0.2 * 2**0.5),  # off the edge of a body
+        ((-0.3, 1.0, 0.3), (-1, 0, 1), 0.5 - 0.3 * 2**0.5),  # off the edge of the surface
+        ((-0.3, 1.0, -0.1), (0, 0, 1), 0.0),  # beside the surface, below its plane
+        ((1.0, 1.0, -0.6), (0, 0, 1), 0.0),  # deeper than a radius
+    ],
+)
+def test_a_particle_is_pushed_from_the_nearest_point_of_the_surface(place, direction, depth):
+    contact, points = _contact(1), _points([place])
+    _take(contact)
+    contact.kick(points, 1.0)
+    stiff = 1.0 / (2.0 * RADIUS / MODULUS + THICK / MODULUS)
+    unit = np.array(direction) / np.linalg.norm(direction)
+    np.testing.assert_allclose(points.velocity[0], stiff * depth * unit, atol=1e-12)
+    assert contact.numbers.energy == pytest.approx(0.5 * stiff * depth**2)
+
+
+def test_reactions_have_the_sum_and_the_moment_of_the_forces():
+    rng = np.random.default_rng(1)
+    node = NODES + 0.1 * rng.standard_normal(NODES.shape)
+    place = rng.uniform([0, 0, 0.2], [4, 2, 0.6], (40, 3))
+    velocity = rng.standard_normal((40, 3))
+    contact, points = _contact(40, node, friction=0.4), _points(place, velocity.copy())
+    _take(contact, node)
+    contact.kick(points, 1e-2)
+    force = (points.velocity - velocity) / 1e-2
+    assert (force != 0.0).any(axis=1).sum() > 10
+    size = np.abs(force).sum()
+    assert np.abs(force.sum(axis=0) + contact.reaction.sum(axis=0)).max() < 1e-12 * size
+    # Tangential forces act at the surface: a particle's own spin has no part in contact.
+    normal = _contact(40, node)
+    points = _points(place)
+    _take(normal, node)
+    normal.kick(points, 1.0)
+    moment = np.cross(place, points.velocity).sum(axis=0)
+    moment += np.cross(node, normal.reaction).sum(axis=0)
+    assert np.abs(moment).max() < 1e-12 * np.abs(points.velocity).sum()
+
+
+def test_triangles_and_edges_in_a_plane_are_touched_like_squares():
+    node = np.array([[0, 0, 0], [2, 0, 0], [2, 2, 0]], float)
+    triangle = _contact(1, node, np.array([[0, 1, 2, 2]]))
+    points = _points([(1.5, 0.5, 0.4)])
+    _take(triangle, node)
+    triangle.kick(points, 1.0)
+    np.testing.assert_allclose(points.velocity, [[0.0, 0.0, 0.1]], atol=1e-12)
+    np.testing.assert_allclose(triangle.reaction[:, 2], -0.1 * np.array([0.25, 0.5, 0.25]))
+    # An edge from +x to -x has its body below: (dz, -dx) points upwards.
+    node = np.array([[2, 0, 0], [0, 0, 0]], float)
+    edge = _contact(2, node, np.array([[0, 1, 1, 0]]))
+    points = _points([(0.5, 0.7, 0.4), (0.5, 0.7, -0.3)])
+    points.place[:, 1] = 0.0
+    _take(edge, node)
+    edge.kick(points, 1.0)
+    np.testing.assert_allclose(points.velocity, [[0, 0, 0.1], [0, 0, 0.8]], atol=1e-12)
+    np.testing.assert_allclose(edge.reaction[:, 2], [-0.225, -0.675])
+
+
+def _bounce(share):
+    """Largest energy of a particle pressed to a face of free nodes, in steps of a share of ours."""
+    node, face = NODES[[0, 1, 4, 3]], np.array([[0, 1, 2, 3]])
+    pressed, depth = 1.0, 1e-3
+    contact = _contact(1, node, face, mass=0.25)  # the bound is exact where node and particle match
+    node, speed = node.copy(), np.zeros((4, 3))
+    stiff = 1.0 / (2.0 * RADIUS / MODULUS + THICK / MODULUS)
+    points = _points([(1.0, 1.0, RADIUS - 0.2 - depth)])
+    pressed = stiff * 0.2  # N, at 0.2 m
+    _take(contact, node)
+    contact.kick(points, 0.0)
+    dt, largest = share * contact.stable_step(1e9), 0.0
+    for _ in range(400):
+        _take(contact, node)
+        contact.kick(points, dt)
+        points.velocity[0, 2] -= dt * pressed
+        speed = speed + dt * contact.reaction / 0.25
+        speed[:, 2] += dt * pressed
+        points.place[:] += dt * points.velocity
+        node = node + dt * speed
+        gap = points.place[0, 2] - node[:, 2].mean() - RADIUS
+        largest = max(largest, abs(gap + 0.2))
+        if largest > 0.1:
+            break
+    return largest / depth
+
+
+def test_the_predicted_step_of_contact_is_where_it_becomes_unstable():
+    assert _bounce(0.99) < 20.0
+    assert _bounce(1.01) > 50.0
+
+
+def test_a_particle_near_a_face_limits_the_step_before_it_touches():
+    contact = _contact(2)
+    for height, limits in ((1.2, False), (0.9, True)):
+        _take(contact)
+        contact.kick(_points([(1.0, 1.0, height), (9.0, 9.0, 9.0)]), 1e-3)
+        assert np.isfinite(contact.stable_step(1.0)) == limits
+
+
+def test_an_eroded_face_is_not_touched():
+    contact, points = _contact(1), _points([(1.0, 1.0, 0.4)])
+    _take(contact, active=np.array([0.0, 1.0, 1.0]))
+    contact.kick(points, 1.0)
+    assert not points.velocity.any()
+
+
+def test_friction_holds_below_its_limit_and_slides_at_it():
+    contact, points = _contact(1, friction=0.5), _points([(1.0, 1.0, 0.3)])
+    stiff = 1.0 / (2.0 * RADIUS / MODULUS + THICK / MODULUS)
+    push, dt, done = stiff * 0.2, 1e-3, 0.0
+    for step in range(2000):
+        _take(contact)
+        points.velocity[:] = (1.0, 0.0, 0.0)  # drawn along
+        points.place[:] = (1.0 + step * dt * 1e-3, 1.0, 0.3)
+        contact.kick(points, dt)
+        force = (points.velocity[0, 0] - 1.0) / dt
+        expected = -min(stiff * step * dt, 0.5 * push)
+        assert force == pytest.approx(expected, rel=1e-9)
+        done -= force * dt
+    held = 0.5 * (0.5 * push) ** 2 / stiff
+    # The force of a step's begin is half a step late: Σ f Δ less half a step of the last force.
+    spent = done - 0.5 * 0.5 * push * dt
+    assert contact.numbers.dissipated == pytest.approx(spent - held, rel=1e-3)
+    assert contact.slip[0, 0] == pytest.approx(0.5 * push / stiff)
+
+
+def test_deep_penetration_is_warned_of():
+    contact = _contact(1)
+    _take(contact)
+    contact.kick(_points([(1.0, 1.0, 0.1)]), 1e-3)
+    assert not contact.warnings()
+    contact.kick(_points([(1.0, 1.0, -0.2)]), 1e-3)
+    assert "one went 0.7 m deep, and beyond 1 m" in contact.warnings()["contact"]
+
+
+def test_what_is_saved_comes_back():
+    contact, points = _contact(1, friction=0.5), _points([(1.0, 1.0, 0.3)], np.ones((1, 3)))
+    _take(contact)
+    contact.kick(points, 1e-2)
+    saved = {key: array.copy() for key, array in contact.save().items()}
+    other = _contact(1, friction=0.5)
+    other.load(saved)
+    for key, array in other.save().items():
+        np.testing.assert_array_equal(array, saved[key])
+    assert other.stable_step(1.0) == contact.stable_step(1.0)
