@@ -8,6 +8,7 @@ import numpy as np
 from quintet.components.fe_plate import MANIFEST
 from quintet.components.fe_plate.added_mass import AddedMass
 from quintet.components.fe_plate.build import initial_state, structure
+from quintet.components.fe_plate.contact_surface import areas, described_layer
 from quintet.components.fe_plate.diagnostics import check, inside_out, motion, not_finite, totals
 from quintet.components.fe_plate.features import Loads, Pressures, Stepped, ranks, stepping_kernel
 from quintet.components.fe_plate.gauges import measured, readings
@@ -41,7 +42,10 @@ SHARES = 4  # of each thread: where they meet, forces are summed once more
 SQUASHED = 4.0  # least steps in which a node that meets a wall moves by an element
 SMALLEST = 0.02  # of an element's volume at the start: below it, it has been turned inside out
 POSITION, VELOCITY = "faces.position", "faces.velocity"
+TOUCHED_POSITION, TOUCHED_VELOCITY = "contact_surface.position", "contact_surface.velocity"
 MEAN_VELOCITY, ACTIVE = "node_glue.velocity", "face_activity.active"
+OPEN = "open_faces.active"
+EARLY = ("node_glue", "contact_surface")  # ports whose partners push as at a step's begin
 
 
 class FePlate(Component):
@@ -78,13 +82,15 @@ class FePlate(Component):
         rows = np.searchsorted(self.surface, self.faces)
         self.corner = np.where(self.faces < 0, -1, rows)  # (f, 4) among these; -1 ends an edge
         self.start = whole.mesh.node[self.surface]  # (k, 3) m
+        owner, area = whole.mesh.owner[whole.coupled], areas(whole.mesh.node, self.faces)
+        self.layer = described_layer(whole, self.surface, owner, area)
         self.on_surface = self.all_ranks.nodes_of(self.surface)
         self.state = initial_state(params, built)
         self.kernel = stepping_kernel(points_of(params))
         self.all_loads = Loads(self.on_surface, Pressures(params.pressures, built))
         self.added_mass = AddedMass(self.on_surface, built.mass)
         self.loads = np.zeros((len(self.surface), 3))  # N, of partners
-        self.glued = False  # whether particles are glued to it
+        self.kicks_early = False  # whether loads act in the first half of a step alone
         # m/s, that velocities at an end lack, of nodes of the surface that this rank moves.
         self.half_kick = np.zeros_like(self.loads[self.on_surface.ids])
         self.accumulated = Accumulated()
@@ -99,11 +105,13 @@ class FePlate(Component):
         }
         if self.params.dimensions == 2:
             mesh["dimensions"] = np.array([2.0])
-        return {
+        described = {
             f"{port}.{key}": array.copy()
-            for port in ("faces", "node_glue")
+            for port in ("faces", "node_glue", "contact_surface")
             for key, array in mesh.items()
         }
+        layer = self.layer | {"step": np.array([self.bound])}
+        return described | {f"contact_surface.{key}": array.copy() for key, array in layer.items()}
 
     def sample(self, request: Fields) -> Fields:
         """Sample the structure below its faces, or hang points on these."""
@@ -112,9 +120,9 @@ class FePlate(Component):
 
     def bind(self, static: Fields, joined: Keys) -> None:
         """Take the mass of particles that are glued to the nodes."""
-        self.glued = "node_glue" in joined
-        # Glued particles push in the first half of a step alone: the link keeps that balance.
-        self.judge.closed = not self.glued
+        self.kicks_early = not joined.isdisjoint(EARLY)
+        # What pushes in the first half of a step alone: the link keeps that balance.
+        self.judge.closed = not self.kicks_early
         if "node_load.added_mass" in static:
             added = static["node_load.added_mass"]
             self.accumulated.brought += self.added_mass.replace(
@@ -140,12 +148,12 @@ class FePlate(Component):
         total, damping = self.accumulated, self.params.mass_damping
         rows, loads = self.on_surface.rows, self.loads[self.on_surface.ids]
         loaded = self.all_loads.write(self.state, self.loads, total.time)
-        if self.glued:
+        if self.kicks_early:
             self._kick_early(dt, loads)
         decay = math.exp(-0.5 * damping * dt)  # of the kinetic energy, in either half
         if total.steps % EVERY == 0:
             works, is_first = self.state.works(self.model.moving), total.steps == 0
-            mass, kicks = self.added_mass.total(), (rows, self.half_kick) if self.glued else None
+            mass, kicks = self.added_mass.total(), (rows, self.half_kick) if self.kicks_early else None
             parts = mass[: self.model.moving], self.model.gravity, kicks
             energies = self.state, motion(self.state, *parts), works, total.brought
             self.judge.note(*energies, self.all_ranks, is_first)
@@ -160,14 +168,14 @@ class FePlate(Component):
         self.bound = self._write_forces(dt, loaded)
         if damping:
             add_damped(self.model, self.state, 1.0 / decay - 1.0)
-        if self.glued:
+        if self.kicks_early:
             self.state.velocity[rows] -= self.half_kick
 
     def _kick_early(self, dt: float, loads: Array) -> None:
         """Apply the partners' loads in the step's first half, and not in its second one.
 
-        Forces of glued particles are those at the step's begin: half a step late they would feed
-        energy in.
+        Forces of glued particles and of contact are those at the step's begin: half a step late
+        they would feed energy in.
         """
         rows = self.on_surface.rows
         push = 0.5 * dt * self.model.inverse_mass[rows, None] * loads * self.model.free[rows]
@@ -214,12 +222,15 @@ class FePlate(Component):
         for key, array in (
             (POSITION, self.state.position),
             (VELOCITY, self.state.velocity),
+            (TOUCHED_POSITION, self.state.position),
             (MEAN_VELOCITY, self.state.mean_velocity),
+            (TOUCHED_VELOCITY, self.state.mean_velocity),
         ):
             if key in wanted:
                 values[key] = self.on_surface.collect(array)
-        if ACTIVE in wanted:
-            values[ACTIVE] = self.owners.gather(self.places_of_owners.active(self.state))
+        if wanted & {ACTIVE, OPEN}:
+            active = self.owners.gather(self.places_of_owners.active(self.state))
+            values |= {key: active.copy() for key in (ACTIVE, OPEN) if key in wanted}
         return values | readings(self.measured, self.built, self.state, wanted, self.all_ranks)
 
     def save(self) -> Fields:
@@ -255,7 +266,7 @@ class FePlate(Component):
         and mass damping.
         """
         mass = self.added_mass.total()[: self.model.moving]
-        kicks = (self.on_surface.rows, self.half_kick) if self.glued else None
+        kicks = (self.on_surface.rows, self.half_kick) if self.kicks_early else None
         energies = motion(self.state, mass, self.model.gravity, kicks)
         return totals(self.state, self.built, mass, energies, self.all_ranks)
 

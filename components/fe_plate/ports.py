@@ -5,11 +5,14 @@ from quintet.interfaces.component import Field, Port
 from quintet.interfaces.manifest import Ports
 from quintet.interfaces.ports import (
     ACTIVE,
+    CONTACT_SURFACE,
     FACE_ACTIVITY,
     FACES,
     NODE_GLUE,
     NODE_LOAD,
     NODE_MASS,
+    OPEN_FACES,
+    PLANAR_CONTACT_SURFACE,
     PLANAR_FACES,
     PLANAR_NODE_GLUE,
     TEMPERATURE,
@@ -56,4 +59,5 @@ def ports(params: FePlateParams) -> Ports:
     measured = tuple(port for port, on in switched if on)
     planar = params.dimensions == 2
     mesh = (PLANAR_FACES, PLANAR_NODE_GLUE) if planar else (FACES, NODE_GLUE)
-    return (NODE_LOAD, NODE_MASS), (*mesh, FACE_ACTIVITY, *measured)
+    touched = (PLANAR_CONTACT_SURFACE if planar else CONTACT_SURFACE, OPEN_FACES)
+    return (NODE_LOAD, NODE_MASS), (*mesh, FACE_ACTIVITY, *touched, *measured)
