@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import astuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -25,8 +26,12 @@ from quintet.interfaces.component import (
 )
 from quintet.interfaces.errors import SceneError, StepError
 
+if TYPE_CHECKING:
+    from quintet.components.dem_bodies.partner_faces import PartnerFaces
+
 LEAVE_PLANE = [1, 3, 5]  # force along y, torque about x and z
 LOADS = ("load.force", "load.torque")
+REACTION = "contact_load.force"
 # Of the port, in the order in which rows are copied out.
 MOTION = ("motion.position", "motion.velocity", "motion.orientation", "motion.angular_velocity")
 CONTACT_FIELDS = ("contact.force", "contact.torque")
@@ -65,6 +70,8 @@ class DemBodies(Component):
         self.count, self.mass = len(self.bodies), masses(self.bodies, self.solids)  # (m,) kg
         self.loaded = False  # whether any body has a load
         self.begun = False  # whether the contacts of the start are known
+        self.faces: PartnerFaces | None = None  # of a partner, that spheres touch
+        self.resources = resources
 
     def describe(self) -> Fields:
         """State masses, and whether there are two dimensions."""
@@ -73,6 +80,12 @@ class DemBodies(Component):
     def sample(self, request: Fields) -> Fields:
         """Sample the surfaces of all bodies as a partner requests."""
         return sample(self.bodies, request)
+
+    def bind(self, static: Fields, joined: Keys) -> None:
+        """Take the faces of a partner's mesh, where a link joins them."""
+        self.faces = features.partner_faces(
+            static, joined, self.params, self.model, self.state, self.mass, self.resources
+        )
 
     def _begin(self) -> None:
         """Detect the contacts of the start, once.
@@ -89,10 +102,13 @@ class DemBodies(Component):
     def stable_dt(self) -> float:
         """Return a fraction of a contact's duration; while nothing can touch, a longer step."""
         self._begin()
-        return self.limit.stable(self.state, self.lists)
+        free = self.limit.stable(self.state, self.lists)
+        return min(free, self.faces.penalty.stable_step(math.inf)) if self.faces else free
 
     def take(self, fields: Fields) -> None:
         """Set force [N] and torque [N m] on each body; 0 where none is given."""
+        if self.faces:
+            self.faces.penalty.take(fields)
         if not self.loaded and fields.keys().isdisjoint(LOADS):
             return
         load = np.zeros((self.count, 6))
@@ -107,6 +123,8 @@ class DemBodies(Component):
         """Advance by exactly dt [s]: half kick, drift, contacts, half kick."""
         self._begin()
         elastic = self.state.report[rows.ELASTIC_ENERGY]
+        if self.faces:
+            self.faces.kick(self.state, dt)
         if self.params.contact_forces:
             self.state.previous_contact_load[:] = self.state.contact_load
         if self.timetable:
@@ -144,6 +162,9 @@ class DemBodies(Component):
             # The mean of both ends gives the change of momentum to rounding.
             mean = 0.5 * (s.previous_contact_load + s.contact_load)[s.row]
             fields |= {"contact.force": mean[:, :3], "contact.torque": mean[:, 3:]}
+        if REACTION in wanted:
+            reaction = self.faces.penalty.reaction if self.faces else np.zeros((0, 3))
+            fields[REACTION] = reaction.copy()
         if not wanted.isdisjoint(MOTION):
             fields |= dict(zip(MOTION, self.stepping.motion(), strict=False))
         return {key: array for key, array in fields.items() if key in wanted}
@@ -171,12 +192,15 @@ class DemBodies(Component):
         arrays = {name: array.copy() for name, array in state._asdict().items()}
         arrays["accumulated"] = np.array(astuple(self.accumulated))
         arrays |= self.timetable.save() if self.timetable else {}
-        return arrays | self.lists.save() | begin.surroundings(self.model)
+        arrays |= self.lists.save() | begin.surroundings(self.model)
+        return arrays | dict(self.faces.penalty.save()) if self.faces else arrays
 
     def load(self, state: Fields) -> None:
         """Restore a saved state, bit for bit."""
         self.begun = True
         self.stepping.load(state)
+        if self.faces:
+            self.faces.penalty.load(state)
         self.loaded = bool(np.any(state["load"]))
         self.accumulated = Accumulated(*state["accumulated"].tolist())
         if self.timetable:
@@ -204,13 +228,20 @@ class DemBodies(Component):
 
     def warnings(self) -> dict[str, str]:
         """Warn of contacts that few steps resolved, and of deep overlaps."""
-        return self.accumulated.warnings()
+        texts = self.accumulated.warnings()
+        return texts | self.faces.penalty.warnings() if self.faces else texts
 
     def totals(self) -> Totals:
         """Mass, momentum and energies of the bodies; internal is the contacts' elastic energy."""
         self._begin()
         whole = self.stepping.whole("motion", "angular_momentum")
-        return diagnostics.totals(*whole, self.mass) if self.stepping.answers else Totals()
+        if not self.stepping.answers:
+            return Totals()
+        totals = diagnostics.totals(*whole, self.mass)
+        if self.faces:
+            totals.kinetic += self.faces.penalty.numbers.half_kick
+            totals.internal += self.faces.penalty.numbers.energy
+        return totals
 
     def view(self) -> Fields:
         """Corners and faces of boxes and polygons, centres and radii of spheres, velocities."""

@@ -1,5 +1,6 @@
 """Cases for the laws of the contract: two weightless bodies that hover over a floor."""
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -35,6 +36,7 @@ def cases() -> tuple[ConformCase, ...]:
         _case("boxes, contact forces", {**boxes, "contact_forces": True}),
         _case("spheres", balls),
         _case("spheres that collide", strike, still=False, smooth=False),
+        _on_a_face({**balls, "contact_with_faces": True, "planes": []}),
         _case("two dimensions", plane, forces=()),  # the plane takes the loads across it
     )
 
@@ -62,3 +64,28 @@ def _case(name: str, params: dict[str, Any], **more: Any) -> ConformCase:
         "forces": ("load.force",),
     }
     return ConformCase(name, params, dt=1e-4, **(loads | more))
+
+
+def _on_a_face(params: dict[str, Any]) -> ConformCase:
+    """Spheres above a face, which may rise to them."""
+    corners = np.array([[0.0, 0.0], [2.0, 0.0], [2.0, 4.0], [0.0, 4.0]])
+    lowest = min(body["centre"][2] for body in params["bodies"])
+    place = np.column_stack([corners, np.full(4, lowest - BALL["radius"] - 1e-9)])
+    static = {
+        "corner": np.arange(4.0)[None], "mass": np.full(4, 0.05), "modulus": np.full(1, 1e7),
+        "thickness": np.full(1, 0.01), "friction": np.full(1, 0.3), "stiffness": np.full(1, 1.0),
+        "safety": np.full(1, 0.9), "step": np.full(1, 1e-3),
+    }  # fmt: skip
+    motion = {"position": place, "velocity": np.zeros((4, 3))}
+    case = _case("spheres on a face", params, smooth=False)
+    return replace(
+        case,
+        static={**case.static, **{f"contact_faces.{key}": field for key, field in static.items()}},
+        rest={
+            **case.rest,
+            **{f"contact_faces.{key}": field for key, field in motion.items()},
+            "contact_activity.active": np.ones(1),
+        },
+        scale={**case.scale, "contact_faces.position": 1e-4},
+        forces=("load.force", "contact_load.force"),
+    )

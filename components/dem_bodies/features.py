@@ -1,6 +1,7 @@
 """Optional physics as objects: pairs of balls, and the limit of the step."""
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,8 +15,11 @@ from quintet.components.dem_bodies.shapes.copies import Bodies
 from quintet.components.dem_bodies.shapes.solid import Solid, contact_length
 from quintet.components.dem_bodies.state import Model, State
 from quintet.components.dem_bodies.timetable import Timetable, has_changes
-from quintet.interfaces.component import Resources
+from quintet.interfaces.component import Array, Fields, Keys, Resources
 from quintet.interfaces.errors import SceneError
+
+if TYPE_CHECKING:
+    from quintet.components.dem_bodies.partner_faces import PartnerFaces
 
 SKIN = 0.4  # over the smallest length of contact: pairs nearer than that are listed
 
@@ -73,3 +77,17 @@ def step_limit(
         steps_per_contact=params.steps_per_contact,
         longest=params.longest_step,
     )
+
+
+def partner_faces(
+    static: Fields, joined: Keys, params: DemBodiesParams, model: Model, state: State, mass: Array,
+    resources: Resources,
+) -> "PartnerFaces | None":  # fmt: skip
+    """Faces of a partner's mesh that spheres touch; None where no link joins them."""
+    if "contact_faces" not in joined:
+        return None
+    # Scenes without contact of two components do not import it.
+    from quintet.components.dem_bodies.partner_faces import PartnerFaces, require_one_rank
+
+    require_one_rank(resources)
+    return PartnerFaces(static, params, model, state, mass)

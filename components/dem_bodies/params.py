@@ -201,6 +201,8 @@ class DemBodiesParams:
         Step in place of the stable one, to find the limit of stability.
     contact_forces
         Whether the loads of contacts on each body are given, as port `contact`.
+    contact_with_faces
+        Whether free spheres touch the faces of a partner's mesh (link contact).
     """
 
     RENAMED: ClassVar = {"speed": "impact_speed", "step": "fixed_step"}
@@ -215,6 +217,7 @@ class DemBodiesParams:
     longest_step: Positive = 1e-3
     fixed_step: Positive | None = None
     contact_forces: bool = False
+    contact_with_faces: bool = False
 
     def __post_init__(self) -> None:
         """Refuse contradictions, and put every copy among the bodies."""
@@ -234,8 +237,19 @@ class DemBodiesParams:
         object.__setattr__(self, "bodies", Bodies(bodies))
         check_plane(self.placed, self.planes, self.gravity, self.dimensions)
         check_pairs(self.pairs)
+        if self.contact_with_faces:
+            self._require_spheres()
         if starts_there():
             overlaps.check(self.placed, self.planes)
+
+    def _require_spheres(self) -> None:
+        for kind in self.placed.kinds:
+            if self.dimensions == 2 or kind.radius is None or kind.locked:
+                raise ValueError(
+                    "contact_with_faces needs bodies that are free spheres in three dimensions; "
+                    f"found {'two dimensions' if self.dimensions == 2 else 'another body'}. Leave "
+                    "it out, or give all bodies shape sphere and nothing locked."
+                )
 
     @property
     def placed(self) -> Bodies:
