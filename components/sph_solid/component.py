@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Mapping
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -9,7 +10,7 @@ from quintet.components.shared.threads import Team
 from quintet.components.sph_solid import MANIFEST
 from quintet.components.sph_solid.build import gauged, initial_state, materials, pair_law
 from quintet.components.sph_solid.diagnostics import check, failure, totals
-from quintet.components.sph_solid.features import pair_sums, ranks
+from quintet.components.sph_solid.features import pair_sums, partner_faces, ranks
 from quintet.components.sph_solid.gauges import bodies, gauges, levels
 from quintet.components.sph_solid.glue import add_work, glued_rows, pull, release, write_forces
 from quintet.components.sph_solid.judgement import ENERGY_EVERY, Judge
@@ -36,14 +37,17 @@ from quintet.interfaces.component import (
     Totals,
 )
 
+if TYPE_CHECKING:
+    from quintet.components.sph_solid.partner_faces import PartnerFaces
+
 FEWEST = 500  # particles that are worth handing to another thread
-LOAD = "glued_load.force"
+LOAD, REACTION = "glued_load.force", "contact_load.force"
 NEEDED_BY_LEVELS = ("body", "failed", "position")
 NO_LEVELS = dict.fromkeys(("levels.highest", "levels.lowest"), np.zeros(0))  # rank 0 answers
 
 
 class SphSolid(Component):
-    """Moves elastic-plastic bodies of particles, which may be glued to a partner's mesh.
+    """Moves elastic-plastic bodies of particles, glued to a partner's mesh or touching it.
 
     A class of one's own may derive from it, with a `Params` that derives from `SphSolidParams`: in
     a scene it is a kind, ``module:Class``, with all ports of this one.
@@ -66,6 +70,7 @@ class SphSolid(Component):
         self.lists = SolidLists(params, self.team, self.all_ranks)
         self.sums = pair_sums(params, self.team)
         self.is_carried = False  # whether a mesh carries the glued particles
+        self.faces: PartnerFaces | None = None  # of a partner, that particles touch
         self._begin()
 
     def describe(self) -> Fields:
@@ -83,14 +88,21 @@ class SphSolid(Component):
     def bind(self, static: Fields, joined: Keys) -> None:
         """Take down whether a mesh carries the glued particles."""
         self.is_carried = "glued" in joined or "glued_load" in joined
+        laws, spacing = self.materials.laws, self.params.spacing
+        self.faces = partner_faces(static, joined, self.state, laws, spacing)
+        if self.faces:
+            self.faces.make(self.state, self.materials)
 
     def stable_dt(self) -> float:
-        """Return the share `courant` of the smallest stable step of all particles."""
-        return self.params.courant * self.state.bound
+        """Return the share `courant` of the smallest stable step of all particles, or contact's."""
+        free = self.params.courant * self.state.bound
+        return min(free, self.faces.penalty.stable_step(self.state.bound)) if self.faces else free
 
     def take(self, fields: Fields) -> None:
-        """Set which particles are still glued, and their velocities in the coming step."""
+        """Set which particles are still glued, their velocities, and faces in the coming step."""
         state = self.state
+        if self.faces:
+            self.faces.penalty.take(fields)
         if "glue_activity.active" in fields:
             active, mass = fields["glue_activity.active"], self.materials.mass(state)
             release(state, active, mass, self.all_ranks)
@@ -103,9 +115,13 @@ class SphSolid(Component):
         self.all_ranks.begin_step()
         if state.steps % ENERGY_EVERY == 0:
             mass = self.materials.mass(state)
-            self.judge.note(state, mass, self.sums, self.params.gravity, self.all_ranks)
+            touching = self.faces.penalty.numbers if self.faces else None
+            self.judge.note(state, mass, self.sums, self.params.gravity, self.all_ranks, touching)
         pull(state)
         add_work(state, dt)
+        if self.faces:
+            self.faces.kick(state, dt)
+            state.velocity[self.fixed_rows] *= self.moves
         displaced = self.team.run(
             kick_and_drift_half, state.particles, dt, state.position, state.velocity,
             state.acceleration, state.failed, state.volume, state.reference, rows.place,
@@ -148,7 +164,8 @@ class SphSolid(Component):
 
     def warnings(self) -> Mapping[str, str]:
         """Reasons why the results may be wrong: energy that appears, numerical fracture."""
-        return self.judge.warnings(self.state, self.all_ranks)
+        texts = self.judge.warnings(self.state, self.all_ranks)
+        return texts | self.faces.penalty.warnings() if self.faces else texts
 
     def notes(self) -> tuple[str, ...]:
         """Settings that would be better for a slow impact."""
@@ -190,6 +207,8 @@ class SphSolid(Component):
         self.materials.take(state)
         self.fixed_rows = np.flatnonzero(state.fixed)
         self.moves = ((state.fixed[self.fixed_rows, None] >> np.arange(3)) & 1) == 0
+        if self.faces:
+            self.faces.make(state, self.materials)
 
     def _write_gradients(self) -> None:
         """Write gradients of velocity, from places and motion in the rows."""
@@ -221,24 +240,31 @@ class SphSolid(Component):
             mass = self.materials.mass(state)
             values.update(bodies(state, mass, self.params, self.all_ranks))
         if "gauges" in ports_wanted:
-            values.update(
-                gauges(self.all_ranks.rows_of(state, self.gauged), self.materials.density)
-            )
+            read = self.all_ranks.rows_of(state, self.gauged)
+            if self.faces:
+                read.velocity += self.faces.penalty.kicked[self.gauged]
+            values.update(gauges(read, self.materials.density))
         if "levels" in ports_wanted:
             whole = self.all_ranks.whole(state, NEEDED_BY_LEVELS)
             values.update(levels(whole, self.params) if not self.all_ranks.rank else NO_LEVELS)
         if LOAD in wanted:
             values[LOAD] = state.force.copy()
+        if REACTION in wanted:
+            penalty = self.faces.penalty if self.faces else None
+            values[REACTION] = penalty.reaction.copy() if penalty else np.zeros((0, 3))
         return {key: values[key] for key in wanted}
 
     def save(self) -> Fields:
         """Copy out all state; the neighbour list is kept as the places it was made from."""
-        return self.all_ranks.whole(self.state).save()
+        saved = self.all_ranks.whole(self.state).save()
+        return saved | dict(self.faces.penalty.save()) if self.faces else saved
 
     def load(self, state: Fields) -> None:
         """Restore a saved state, bit for bit."""
         self.state = State.load(state)
         self.all_ranks.load(self.state)
+        if self.faces:
+            self.faces.penalty.load(state)
         self._list()
 
     def totals(self) -> Totals:
@@ -249,6 +275,11 @@ class SphSolid(Component):
         sums = totals(state, mass, carried, gravity, self.all_ranks)
         if self.params.axisymmetric:  # the other half of a ring moves the other way
             sums.momentum[:2], sums.angular_momentum[:] = 0.0, 0.0
+        if self.faces:
+            numbers = self.faces.penalty.numbers
+            sums.kinetic += numbers.half_kick
+            sums.internal += numbers.energy
+            sums.dissipated = numbers.dissipated
         return sums
 
     def view(self) -> Fields:

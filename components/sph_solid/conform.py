@@ -14,6 +14,18 @@ BLOCK: dict[str, Any] = {
 }
 STEP = 4e-7  # s
 GLUED = 2 * 4 * 4  # particles in two layers
+# A face that the block just touches from above.
+CORNERS = np.array([[0.0, 0.0, 0.0], [0.05, 0.0, 0.0], [0.05, 0.04, 0.0], [0.0, 0.04, 0.0]])
+FACE = {
+    "contact_faces.corner": np.arange(4.0)[None],
+    "contact_faces.mass": np.full(4, 0.05),
+    "contact_faces.modulus": np.full(1, 1e11),
+    "contact_faces.thickness": np.full(1, 0.01),
+    "contact_faces.friction": np.full(1, 0.3),
+    "contact_faces.stiffness": np.full(1, 1.0),
+    "contact_faces.safety": np.full(1, 0.9),
+    "contact_faces.step": np.full(1, 1e-6),
+}
 
 
 def cases() -> tuple[ConformCase, ...]:
@@ -50,6 +62,21 @@ def cases() -> tuple[ConformCase, ...]:
         ConformCase("artificial stress", {**BLOCK, "artificial_stress": 0.3}, dt=STEP),
         ConformCase("plane strain", {**BLOCK, "dimensions": 2}, dt=STEP),
         ConformCase("rings", {**BLOCK, "dimensions": 2, "axisymmetric": True}, dt=STEP),
+        ConformCase(
+            "block on a face",
+            {**BLOCK, "contact_with_faces": True},
+            static=FACE,
+            rest={
+                "contact_faces.position": CORNERS,
+                "contact_faces.velocity": np.zeros((4, 3)),
+                "contact_activity.active": np.ones(1),
+            },
+            scale={"contact_faces.position": 1e-5, "contact_faces.velocity": 1.0},
+            dt=STEP,
+            smooth=False,  # it touches, or it does not
+            forces=("contact_load.force",),
+            activity={"contact_activity.active": ()},
+        ),
         ConformCase(
             "glued block",
             {**BLOCK, "glued": [layers]},

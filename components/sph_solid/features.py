@@ -1,5 +1,8 @@
 """Optional physics as objects: which sums over pairs a scene needs."""
 
+from typing import TYPE_CHECKING
+
+from quintet.components.shared.materials.solid import Solid
 from quintet.components.shared.threads import Team
 from quintet.components.sph_solid.method import method
 from quintet.components.sph_solid.neighbours import symmetry_planes
@@ -7,7 +10,11 @@ from quintet.components.sph_solid.pair_sums import CurrentSums, PairSums
 from quintet.components.sph_solid.params import SphSolidParams
 from quintet.components.sph_solid.ranks.method import Ranks
 from quintet.components.sph_solid.ranks.one import OneRank
-from quintet.interfaces.component import Resources
+from quintet.components.sph_solid.state import State
+from quintet.interfaces.component import Fields, Keys, Resources
+
+if TYPE_CHECKING:
+    from quintet.components.sph_solid.partner_faces import PartnerFaces
 
 PENALTY = 1.0  # α of Ganzenmüller's force against motion that no deformation sees
 
@@ -38,3 +45,15 @@ def pair_sums(params: SphSolidParams, team: Team) -> PairSums:
 
         return ReferenceSums(PENALTY, params.spacing, team)
     return CurrentSums(lambda state, lists: lists.arrays, team)
+
+
+def partner_faces(
+    static: Fields, joined: Keys, state: State, laws: list[Solid], spacing: float
+) -> "PartnerFaces | None":
+    """Faces of a partner's mesh that particles touch; None where no link joins them."""
+    if "contact_faces" not in joined:
+        return None
+    # Scenes without contact of two components do not import it.
+    from quintet.components.sph_solid.partner_faces import PartnerFaces
+
+    return PartnerFaces(static, state, laws, spacing)

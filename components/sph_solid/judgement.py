@@ -11,6 +11,8 @@ nothing has failed (numerical fracture). A bond is a pair of nearest neighbours 
 lost if its particles are out of each other's reach and none is between them.
 """
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
@@ -26,6 +28,9 @@ from quintet.components.sph_solid.ranks.method import Ranks
 from quintet.components.sph_solid.state import Array, State, Whole
 from quintet.interfaces.params import Vector
 
+if TYPE_CHECKING:
+    from quintet.components.shared.contact.penalty import Numbers
+
 ENERGY_EVERY, BONDS_EVERY = 32, 64  # steps
 NEAREST = 1.2  # spacings: bonds at the start are no longer
 EMPTY = 0.95  # spacings around the middle of a lost bond, where no particle is
@@ -37,10 +42,12 @@ FEWEST_LOST = 1e-3  # of all bonds
 NEEDED_BY_BONDS = ("identity", "position", "body", "failed", "temperature", "material")
 
 
-def note_energies(state: State, kinetic: float, potential: float, internal: float) -> None:
-    """Extend the ranges of energies [J] by those of the present time."""
+def note_energies(
+    state: State, kinetic: float, potential: float, internal: float, elsewhere: float = 0.0
+) -> None:
+    """Extend the ranges of energies [J] by those of the present time; their sum has one more."""
     energies = np.array([kinetic, potential, internal])
-    total = float(energies.sum()) - state.work
+    total = float(energies.sum()) + elsewhere - state.work
     if state.steps == 0:
         state.ranges[:] = energies[:, None]
         state.sums[:] = total
@@ -91,11 +98,14 @@ class Judge:
         self.can_tear = not method(params).total_lagrangian
 
     def note(
-        self, state: State, mass: Array, sums: PairSums, gravity: Vector, ranks: Ranks
-    ) -> None:
-        """Take down energies and lost bonds, with masses (n,) kg."""
+        self, state: State, mass: Array, sums: PairSums, gravity: Vector, ranks: Ranks,
+        touching: "Numbers | None",
+    ) -> None:  # fmt: skip
+        """Take down energies and lost bonds, with masses (n,) kg and sums over faces touched."""
         now = totals(state, mass, glued_rows(state, attached=True), gravity, ranks)
-        note_energies(state, now.kinetic, now.potential, now.internal)
+        # What contact with a partner's faces holds or dissipated, less what the faces did.
+        brought = touching.brought if touching else 0.0
+        note_energies(state, now.kinetic, now.potential, now.internal, brought)
         self._note_viscous(state, sums, ranks)
         if state.steps % BONDS_EVERY == 0 and self.can_tear:
             whole = ranks.whole(state, NEEDED_BY_BONDS)

@@ -96,6 +96,8 @@ class SphSolidParams:
         Particles that are held.
     glued
         Particles that hang on a partner's mesh: they move with it, and it bears their mass.
+    contact_with_faces
+        Whether particles touch the faces of a partner's mesh, at half a spacing (link contact).
     gravity : m/s2
         Of particles that are not glued; the mesh bears the weight of those that are.
     gauges : m
@@ -132,6 +134,7 @@ class SphSolidParams:
     symmetry: tuple[SymmetryPlane, ...] = ()
     fixed: tuple[Fixed, ...] = ()
     glued: tuple[Region, ...] = ()
+    contact_with_faces: bool = False
     gravity: Vector = (0.0, 0.0, 0.0)
     gauges: tuple[Vector, ...] = ()
     levels: tuple[Level, ...] = ()
@@ -156,6 +159,11 @@ class SphSolidParams:
         )
         self._check_symmetry()
         self._check_method()
+        _require(
+            not (self.contact_with_faces and (self.glued or self.axisymmetric)),
+            "contact_with_faces needs bodies that are neither glued nor axisymmetric; found "
+            f"{'glued particles' if self.glued else 'axisymmetric'}. Leave out one of the two.",
+        )
         if self.dimensions == 2:
             self._check_plane()
         if self.axisymmetric:

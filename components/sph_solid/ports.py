@@ -6,9 +6,13 @@ from quintet.components.sph_solid.params import SphSolidParams
 from quintet.interfaces.component import Field, Port
 from quintet.interfaces.manifest import Ports
 from quintet.interfaces.ports import (
+    CONTACT_ACTIVITY,
+    CONTACT_FACES,
+    CONTACT_LOAD,
     GLUE_ACTIVITY,
     GLUED,
     GLUED_LOAD,
+    PLANAR_CONTACT_FACES,
     POSITION,
     TEMPERATURE,
     VELOCITY,
@@ -26,6 +30,7 @@ SHOWS = (
 )
 # Of each body, in the order of the scene: of what is computed, without images.
 UNGLUED = "it has no table glued"  # where a link needs glued particles
+UNTOUCHED = "set contact_with_faces = true"  # where a link needs contact with faces
 BODIES = Port(
     "bodies",
     fields=(
@@ -69,8 +74,13 @@ def ports(params: SphSolidParams) -> Ports:
     told for the coming step: over a mesh of the same steps this is one leapfrog.
     """
     glued = len(params.glued) > 0
-    taken = (GLUED, GLUE_ACTIVITY) if glued else ()
-    load = (GLUED_LOAD,) if glued else ()
+    taken: tuple[Port, ...] = (GLUED, GLUE_ACTIVITY) if glued else ()
+    load: tuple[Port, ...] = (GLUED_LOAD,) if glued else ()
+    if params.contact_with_faces:
+        faces = PLANAR_CONTACT_FACES if params.dimensions == 2 else CONTACT_FACES
+        taken, load = (*taken, faces, CONTACT_ACTIVITY), (*load, CONTACT_LOAD)
+    lacking: tuple[tuple[str, str], ...] = () if glued else ((GLUED_LOAD.name, UNGLUED),)
+    lacking += () if params.contact_with_faces else ((CONTACT_FACES.name, UNTOUCHED),)
     read = (*((GAUGES,) if params.gauges else ()), *((LEVELS,) if params.levels else ()))
-    bodies = BODIES if glued else replace(BODIES, lacks=((GLUED_LOAD.name, UNGLUED),))
+    bodies = replace(BODIES, lacks=lacking) if lacking else BODIES
     return taken, (bodies, *load, *read)

@@ -16,3 +16,8 @@ def refuse_what_needs_one_rank(params: SphSolidParams, ranks: int) -> None:
         raise SceneError(
             f"axisymmetric must be false of a solid on {ranks} ranks; it is true. Take one rank."
         )
+    if params.contact_with_faces:
+        raise SceneError(
+            f"contact_with_faces must be false of a solid on {ranks} ranks; it is true. Take one "
+            "rank and several threads."
+        )
