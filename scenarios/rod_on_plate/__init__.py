@@ -1,0 +1,1 @@
+"""A wave passes from finite elements to particles that are glued to them, and back: scene."""
