@@ -153,8 +153,8 @@ class FePlate(Component):
         decay = math.exp(-0.5 * damping * dt)  # of the kinetic energy, in either half
         if total.steps % EVERY == 0:
             works, is_first = self.state.works(self.model.moving), total.steps == 0
-            mass, kicks = self.added_mass.total(), (rows, self.half_kick) if self.kicks_early else None
-            parts = mass[: self.model.moving], self.model.gravity, kicks
+            kicks = (rows, self.half_kick) if self.kicks_early else None
+            parts = self.added_mass.total()[: self.model.moving], self.model.gravity, kicks
             energies = self.state, motion(self.state, *parts), works, total.brought
             self.judge.note(*energies, self.all_ranks, is_first)
         total.steps += 1
