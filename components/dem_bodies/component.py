@@ -129,16 +129,12 @@ class DemBodies(Component):
             self.state.previous_contact_load[:] = self.state.contact_load
         if self.timetable:
             self.timetable.advance(self.state, self.accumulated.time, dt)
-        self._move(dt)
-        self.accumulated.add(dt, elastic, self.state.report)
-
-    def _move(self, dt: float) -> None:
-        listed = self.stepping.advance(self.state, dt, self.loaded)
-        report = self.state.report
+        listed, report = self.stepping.advance(self.state, dt, self.loaded), self.state.report
         if not listed:
             raise self._failure(0.0)
         if not (report[rows.DEEPEST] <= ALLOWED_DEPTH and math.isfinite(report[rows.CONTACT_WORK])):
             raise self._failure(dt)
+        self.accumulated.add(dt, elastic, report)
 
     def _failure(self, dt: float) -> StepError:
         time, balls = self.accumulated.time + dt, self.stepping.pairs_of_all()
