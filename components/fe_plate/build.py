@@ -269,9 +269,9 @@ def initial_state(params: FePlateParams, built: Structure) -> State:
     for part, first, last in (*built.inner, *built.border):
         state.points[first:last, TEMPERATURE] = built.laws[part].temperature
         nodes_here = np.unique(model.corner[first * size : last * size])
-        given, of_file = params.parts[part].velocity, built.mesh.velocity
-        if given is not None:
-            state.velocity[nodes_here] = given
+        of_part, of_file = params.parts[part].velocity, built.mesh.velocity
+        if of_part is not None:
+            state.velocity[nodes_here] = of_part
         elif of_file is not None:
             state.velocity[nodes_here] = of_file[nodes_here]
     state.velocity[:] *= model.free

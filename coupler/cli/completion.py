@@ -119,15 +119,16 @@ def key_paths(table: Mapping[str, Any], above: str) -> Iterator[str]:
 
 def _classes(table: str, name: str, entry: Any) -> list[type]:
     """Parameter classes of a table of a scene."""
-    own = _at(entry, name)
-    if not isinstance(own, dict):
+    chosen = _at(entry, name)
+    if not isinstance(chosen, dict):
         return []
-    kind = own.get("kind")
+    kind = chosen.get("kind")
     if table == "components":
         params = trusted_params(kind, Path(), False) if kind else None  # nothing of its folder
         return [ComponentKeys, *([params] if params else [])]
     if table == "links":
-        return [made] if kind in known_links() and (made := maker(str(kind)).keys) else []
+        params = maker(str(kind)).keys if kind in known_links() else None
+        return [params] if params else []
     if table == "groups":
         return [GroupSettings]
     return [key.inner for key in keys(SceneTables) if key.name == table and key.inner is not None]

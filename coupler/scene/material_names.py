@@ -28,12 +28,12 @@ def with_materials(table: Table, folder: Path, imports: bool) -> tuple[Table, li
     imports
         Whether code of the scene's own may be imported to learn which keys take constants.
     """
-    own, mistakes = _own_materials(table.get(KEY, {}), folder)
+    added, mistakes = _own_materials(table.get(KEY, {}), folder)
     components = table.get("components")
     if mistakes or not isinstance(components, dict):
         return table, mistakes
     filled = {
-        name: _component(entry, f"components.{name}", folder, imports, own, mistakes)
+        name: _component(entry, f"components.{name}", folder, imports, added, mistakes)
         for name, entry in components.items()
     }
     scene = {key: value for key, value in table.items() if key != KEY}
@@ -69,12 +69,12 @@ def _component(
     where: str,
     folder: Path,
     imports: bool,
-    own: Mapping[str, Table],
+    added: Mapping[str, Table],
     mistakes: list[str],
 ) -> Any:
     params = trusted_params(table.get("kind"), folder, imports) if isinstance(table, dict) else None
     if params is None or not takes_materials(params):
         return table
-    filled, wrong = fill(params, table, where, {**library(), **own})
+    filled, wrong = fill(params, table, where, {**library(), **added})
     mistakes += wrong
     return filled

@@ -87,8 +87,8 @@ def leaves(table: Table, above: str = "") -> Iterator[tuple[str, Any]]:
 def sources_of(material: Table) -> Iterator[tuple[str, str]]:
     """Yield each constant's path with its source; constants without one are left out."""
     paths = [path for path, _ in leaves(constants(material))]
-    for source, given in material.get("sources", {}).items():
-        names = [""] if given == "all" else given
+    for source, paths_named in material.get("sources", {}).items():
+        names = [""] if paths_named == "all" else paths_named
         for path in paths:
             if any(not name or path == name or path.startswith(f"{name}.") for name in names):
                 yield path, source

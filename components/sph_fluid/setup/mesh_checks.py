@@ -103,12 +103,12 @@ def _check_fluid(name: str, region: str, behind: Surface, places: Array) -> None
     if len(wrong):
         deepest = float(below.max())
         where = np.array2string(places[np.argmax(below)], precision=4)
-        found = f"{deepest:.3g} m behind" if deepest > 0.0 else f"{-deepest:.3g} m before"
-        found = "far behind" if deepest >= FAR else found
+        place = f"{deepest:.3g} m behind" if deepest > 0.0 else f"{-deepest:.3g} m before"
+        place = "far behind" if deepest >= FAR else place
         raise ValueError(
             f"{name} must have all fluid {APART:g} spacings, {APART * behind.spacing:g} m, or more "
             f"before it; found {len(wrong)} of {len(places)} particles of {region} behind or "
-            f"nearer, one {found}, at {where} m. Cut the fluid, or choose the other fluid_side."
+            f"nearer, one {place}, at {where} m. Cut the fluid, or choose the other fluid_side."
         )
 
 

@@ -32,20 +32,20 @@ class Card(NamedTuple):
     def fields(self, widths: tuple[int, ...]) -> list[str]:
         """Cut the line into fields: at its commas, or in columns of standard widths."""
         if "," in self.text:
-            found = [field.strip() for field in self.text.split(",")]
+            fields = [field.strip() for field in self.text.split(",")]
         else:
             if "\t" in self.text:
                 rule = "a line without commas has its fields in fixed columns"
                 self.refuse(rule, "a tabulator", "Write spaces, or commas.")
-            found, begin = [], 0
+            fields, begin = [], 0
             for width in widths:
                 if self.form == LONG:
                     width = 20
                 elif self.form == TEN and width == 8:
                     width = 10
-                found.append(self.text[begin : begin + width].strip())
+                fields.append(self.text[begin : begin + width].strip())
                 begin += width
-        return found + [""] * (len(widths) - len(found))
+        return fields + [""] * (len(widths) - len(fields))
 
     def whole(self, field: str, name: str) -> int:
         """Whole number in a field; 0 if it is blank."""
@@ -83,13 +83,13 @@ class Block(NamedTuple):
 
 def blocks(path: Path) -> list[Block]:
     """Read all keywords of a file and of those that it includes, in order."""
-    found: list[Block] = []
-    _read(path, path.parent.resolve(), STANDARD, (), found)
-    return found
+    all_blocks: list[Block] = []
+    _read(path, path.parent.resolve(), STANDARD, (), all_blocks)
+    return all_blocks
 
 
 def _read(
-    path: Path, folder: Path, form: str, within: tuple[Path, ...], found: list[Block]
+    path: Path, folder: Path, form: str, within: tuple[Path, ...], blocks: list[Block]
 ) -> None:
     """Append the blocks of a file; `within`: the files that include it."""
     current, name = None, path.name
@@ -99,10 +99,10 @@ def _read(
             continue
         if not text.startswith("*"):
             if current is not None:
-                own = card._replace(form=current.head.form)
-                current.cards.append(own)
+                card_of_block = card._replace(form=current.head.form)
+                current.cards.append(card_of_block)
                 if current.keyword == "INCLUDE" and text.strip():
-                    _include(own, path, folder, within, found)
+                    _include(card_of_block, path, folder, within, blocks)
             elif text.strip():
                 rule = "data must stand below a keyword"
                 card.refuse(rule, text.strip()[:40], "Give a file of LS-DYNA keywords.")
@@ -117,7 +117,7 @@ def _read(
             rule = "files are included by *INCLUDE alone"
             card.refuse(rule, f"*{keyword}", "Write what it includes into one file.")
         if keyword != "INCLUDE":
-            found.append(current)
+            blocks.append(current)
 
 
 def _keyword(text: str) -> tuple[str, str]:
@@ -143,7 +143,7 @@ def _form(card: Card, text: str) -> str:
 
 
 def _include(
-    card: Card, path: Path, folder: Path, within: tuple[Path, ...], found: list[Block]
+    card: Card, path: Path, folder: Path, within: tuple[Path, ...], blocks: list[Block]
 ) -> None:
     """Read a file that *INCLUDE names; it lies in the folder of the first one, or below."""
     name = card.text.strip()
@@ -154,4 +154,4 @@ def _include(
     above = (*within, path.resolve())
     if included in above or len(above) > DEEPEST:
         card.refuse("a file must not include itself", name, "Remove the *INCLUDE.")
-    _read(included, folder, card.form, above, found)
+    _read(included, folder, card.form, above, blocks)
