@@ -129,20 +129,21 @@ class DemBodies(Component):
             self.state.previous_contact_load[:] = self.state.contact_load
         if self.timetable:
             self.timetable.advance(self.state, self.accumulated.time, dt)
-        listed, report = self.stepping.advance(self.state, dt, self.loaded), self.state.report
-        if not listed:
-            raise self._failure(0.0)
-        if not (report[rows.DEEPEST] <= ALLOWED_DEPTH and math.isfinite(report[rows.CONTACT_WORK])):
-            raise self._failure(dt)
-        self.accumulated.add(dt, elastic, report)
+        self._move(dt)
+        self.accumulated.add(dt, elastic, self.state.report)
 
-    def _failure(self, dt: float) -> StepError:
-        time, balls = self.accumulated.time + dt, self.stepping.pairs_of_all()
+    def _move(self, dt: float) -> None:
+        """Advance; raise an error where neighbours cannot be listed, or overlaps are too deep."""
+        listed, report = self.stepping.advance(self.state, dt, self.loaded), self.state.report
+        is_finite = math.isfinite(report[rows.CONTACT_WORK])
+        if listed and report[rows.DEEPEST] <= ALLOWED_DEPTH and is_finite:
+            return
+        time, balls = self.accumulated.time + dt * listed, self.stepping.pairs_of_all()
         _, state = self.stepping.whole()
         others, answers = self.lists.bodies, self.stepping.answers
         nothing: tuple[str, Array | None] = "", None
         text, place = diagnostics.failure(state, balls, others, time) if answers else nothing
-        return StepError(self.stepping.said(text), place)
+        raise StepError(self.stepping.said(text), place)
 
     def check(self) -> None:
         """Refuse a body whose rotation is not finite."""
