@@ -51,7 +51,7 @@ EXAMPLES = {
         "quintet study dam_break_front --error 0.05 --run",
     ),
     "stability": (
-        "quintet stability two_springs",
+        "quintet stability elastic_gate --preset quick",
         "quintet stability plate_modes --json limits.json",
     ),
     "scan": ("quintet scan two_springs", "quintet scan --all --quick"),

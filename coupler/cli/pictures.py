@@ -116,8 +116,10 @@ def report(options: argparse.Namespace) -> int:
         require(library, "a report")
     place = free_place(options.folder / REPORT, options.out, [".html"], options.force)
     marker = read_marker(options.folder)
-    if marker and marker.kind in CAPTIONS:
-        written = write_series_report(marker.kind, options.folder, place)
+    left = [kind for kind in CAPTIONS if (options.folder / f"{kind}.json").is_file()]
+    series = marker.kind if marker else "".join(left[:1])
+    if series in CAPTIONS:
+        written = write_series_report(series, options.folder, place)
     else:
         written = write_report(options.folder, place)
     print(f"written: {os.path.relpath(written)}")

@@ -5,6 +5,8 @@ import tempfile
 from pathlib import Path
 
 from quintet.coupler.cli.options import IMPORT, Command, add_scene, load_scene
+from quintet.interfaces.errors import SceneError
+from quintet.interfaces.libraries import require
 
 GRAPH = "draw components, ports and links instead of the plan"
 PICTURE = (
@@ -76,16 +78,26 @@ def _draw_start(options: argparse.Namespace) -> None:
     """Draw what a scene shows at its start, from three sides."""
     # Start-up: only this picture needs it.
     from quintet.coupler.report.free_place import free_place
-    from quintet.coupler.report.panels import can_draw
     from quintet.coupler.report.redraw import FORMATS
     from quintet.coupler.report.three_views import draw_three_views
     from quintet.coupler.run.first_view import write_first_view
 
+    require("matplotlib", "--picture")
     place = free_place(options.picture, options.picture, FORMATS, options.force, "--picture")
-    if not can_draw():
-        return
     options.transport = "memory"  # nothing travels: all components are built here
     scene = load_scene(options)
+    if unread := [c.kind for c in scene.components.values() if c.unread]:
+        raise SceneError(
+            f"--picture builds all components, and {', '.join(unread)} is code that check does not "
+            "import by itself. Add --import."
+        )
+    try:
+        place.parent.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise SceneError(
+            f"--picture {place}: it must lie in a folder; {error.filename} is none "
+            f"({error.strerror}). Name another file."
+        ) from error
     with tempfile.TemporaryDirectory() as folder:
         if not write_first_view(scene, Path(folder)):
             print("quintet: no picture: no component has anything to show.", flush=True)

@@ -13,7 +13,13 @@ from quintet.interfaces.errors import SceneError
 class JsonFile:
     """What a command found, as JSON; with no path, nowhere."""
 
-    def __init__(self, path: Path | None, keys: Collection[str], option: str = "--json") -> None:
+    def __init__(
+        self,
+        path: Path | None,
+        keys: Collection[str],
+        option: str = "--json",
+        kind: type[dict[str, Any]] | type[list[Any]] | None = None,
+    ) -> None:
         """Refuse a file, before anything is done, that is not what such a command left.
 
         Parameters
@@ -24,9 +30,11 @@ class JsonFile:
             Of the table that the command leaves, or of each in its list.
         option : str
             That names the file.
+        kind : dict, list or None
+            What the command leaves, if it leaves always the same: a table, or a list of tables.
         """
         self.path = path
-        if path and path.exists() and not _is_of(path, keys):
+        if path and path.exists() and not _is_of(path, keys, kind):
             raise SceneError(
                 f"{option} {path}: it must be new, or what this command left there before; it is "
                 "something else. Name another file."
@@ -48,12 +56,14 @@ def require_writable(path: Path) -> None:
         )
 
 
-def _is_of(path: Path, keys: Collection[str]) -> bool:
+def _is_of(path: Path, keys: Collection[str], kind: type | None) -> bool:
     """Whether a file is empty, or JSON of tables with these keys."""
     try:
         text = path.read_bytes().decode()
         content = json.loads(text) if text else []
     except (OSError, ValueError, RecursionError):
+        return False
+    if text and kind and not isinstance(content, kind):
         return False
     tables = content if isinstance(content, list) else [content]
     return all(isinstance(entry, dict) and entry.keys() >= set(keys) for entry in tables)

@@ -14,7 +14,7 @@ class MarkedPlace:
     Raises
     ------
     SceneError
-        From every method: the file has not one such place.
+        From every method: the markers are missing, repeated or in the wrong order.
     """
 
     begin: str

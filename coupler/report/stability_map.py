@@ -21,7 +21,8 @@ def draw_maps(scene: str, limits: Sequence[Found], out: Path) -> Path | None:
 
     Returns `out`, or None where there is none, or nothing can draw.
     """
-    names = list(dict.fromkeys(limit["name"] for limit in limits if limit["against"]))
+    limits = [limit for limit in limits if limit["against"] and limit["runs"]]
+    names = list(dict.fromkeys(limit["name"] for limit in limits))
     if not names or not can_draw():
         return None
     figure, panels = curve_panels(len(names), f"{scene}: limits of stability")

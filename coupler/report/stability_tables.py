@@ -48,8 +48,8 @@ def _against(limit: Found) -> str:
 
 
 def _how(limit: Found) -> str:
-    if not limit["complete"]:
-        return f"the search was ended after {len(limit['runs'])} runs; the same command goes on"
+    if not limit.get("complete", True):
+        return f"search interrupted after {len(limit['runs'])} runs; repeat the command to continue"
     if limit["found"] is not None:
         return f"{limit['broke']}: {limit['how']}"
     first, last = limit["range"]

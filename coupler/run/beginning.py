@@ -33,6 +33,8 @@ class Start:
     def __init__(self, scene: Scene) -> None:
         self.beginning: Beginning | None = scene.beginning
         self.goes_on = bool(scene.beginning and scene.beginning.goes_on(scene.resolved))
+        # Read now: the other run may be gone when this one ends.
+        self.provenance = _provenance(scene.beginning)
 
     def begin(self, coupling: Coupling) -> None:
         """Have the components begin, once their ports are joined."""
@@ -105,9 +107,8 @@ def _take_over_group(group: Any, state: State, stretch: float) -> None:
         _take_over_group(member, saved, stretch)
 
 
-def provenance(scene: Scene) -> dict[str, Any]:
+def _provenance(beginning: Beginning | None) -> dict[str, Any]:
     """What ``results.json`` says of the run that a scene begins from; {} of one that does not."""
-    beginning = scene.beginning
     if beginning is None:
         return {}
     # Only scenes that begin from another run load HDF5 here.

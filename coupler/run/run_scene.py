@@ -12,7 +12,7 @@ from quintet.coupler.run.simulate import conclude_for_coupler, make_folder, simu
 from quintet.coupler.scene.needs import require_memory
 from quintet.coupler.scene.overrides import run_arguments
 from quintet.coupler.scene.scene import Scene
-from quintet.interfaces.errors import QuintetError
+from quintet.interfaces.errors import QuintetError, SceneError
 from quintet.interfaces.libraries import require
 from quintet.interfaces.lines.endpoint import require_free
 
@@ -38,6 +38,11 @@ def run_scene(
         Whether it is rank 0 of an MPI job that a launcher has started with all its ranks.
     """
     check_machine(scene, rank)  # before a former run is touched
+    if scene.beginning and out and out.resolve() == scene.beginning.folder.resolve():
+        raise SceneError(
+            f"--out {out}: it must be another folder than that of begin_from, whose state is read. "
+            "Name another."
+        )
     with begin("run", scene.file.name, files_of(scene), out, force) as place:
         try:
             make_folder(scene, place.path)

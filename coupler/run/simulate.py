@@ -32,7 +32,7 @@ from quintet.coupler.launch.disturbance import UNDISTURBED, Disturbance
 from quintet.coupler.launch.processes import RUN, OwnProcesses, end_marked
 from quintet.coupler.launch.watchdog import Watchdog
 from quintet.coupler.run import results, snapshots
-from quintet.coupler.run.beginning import Start, provenance
+from quintet.coupler.run.beginning import Start
 from quintet.coupler.run.energy import EnergyMeter
 from quintet.coupler.run.leaving import leave_in_time
 from quintet.coupler.run.loop import run
@@ -97,6 +97,7 @@ class ActiveRun:
         self.scene, self.folder, self.snapshot = scene, folder, snapshot
         self.stop, self.watchdog, self.clock = stop, watchdog, results.Clock()
         self.energy = EnergyMeter()
+        self.begun_from: dict[str, Any] = {}  # what results say of the run that it begins from
         self.exchange = scene.exchange()
         self.disturbance = disturbance_of(scene)
         if snapshot:
@@ -158,6 +159,7 @@ class ActiveRun:
         if self.error_bar:
             asked = {name: keys | self.error_bar.needs[name] for name, keys in asked.items()}
         start = Start(scene)
+        self.begun_from = start.provenance
         end = run(coupling, scene.file.end, self.writer, asked, self.judgement, restore, start)
         for file in self.files:
             file.close()
@@ -348,7 +350,7 @@ def conclude(run: ActiveRun) -> int:
         outcomes, bars = results.with_error_bars(run.error_bar, scene, folder, outcomes)
     content = {
         **results.headline(scene, outcome),
-        **provenance(scene),
+        **run.begun_from,
         "expect": results.expectations(outcomes),
         "ledger": run.ledger.summary(),
         "repetitions": run.costs.repetitions,

@@ -101,6 +101,7 @@ def _components(
     """Names of the components that begin from a run, which must have them, of the same kinds."""
     there = before["components"]
     present = present if isinstance(present, dict) else {}
+    present = {name: entry for name, entry in present.items() if isinstance(entry, dict)}
     if isinstance(asked, list) and asked:
         for name in map(str, asked):
             for known, whose in ((present, "this scene"), (there, f"the run in {place}")):
@@ -116,7 +117,7 @@ def _components(
             f" there are {', '.join(there)}, here {', '.join(present)}. Name them alike."
         )
     for name in names:
-        was, is_now = there[name].get("kind"), dict(present[name]).get("kind")
+        was, is_now = there[name].get("kind"), present[name].get("kind")
         if was != is_now:
             raise SceneError(
                 f"begin_from: components.{name} must be of kind {was}, as in the run in {place}; "

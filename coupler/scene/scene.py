@@ -115,7 +115,7 @@ class OutputSettings:
     displacement_scale: Positive = 1.0
     totals: NotNegative = 0.0
     snapshots: NotNegative = 0.0
-    states: tuple[NotNegative, ...] = ()
+    states: tuple[Positive, ...] = ()
     record: bool = True
     fields: tuple[str, ...] = ()
     watch: tuple[str, ...] = ()

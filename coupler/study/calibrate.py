@@ -18,6 +18,7 @@ import numpy as np
 
 from quintet.coupler.files.disk import write_whole
 from quintet.coupler.files.json_file import JsonFile
+from quintet.coupler.files.run_files import REPORT
 from quintet.coupler.measures.evaluation import reference_value
 from quintet.coupler.measures.expectation import Expectation
 from quintet.coupler.measures.misfit_profile import misfit_interval
@@ -156,7 +157,7 @@ def calibrate(
     if ensemble is not None:
         rise, rise_from = scatter_of(ensemble, to), f"the standard deviation of {ensemble}"
     folder_name, _ = plan("calibrate", asked, _corners(ranges), jobs, retry)
-    folder = share("calibrate", folder_name, (NAME, TABLE, PICTURE, JOURNAL), out)
+    folder = share("calibrate", folder_name, (NAME, TABLE, PICTURE, JOURNAL, REPORT), out)
     fitted = Calibration(folder_name, folder, to, expectation.unit, rise, rise_from)
     print(f"{folder_name}: {runs} runs, {jobs} at once, in {folder}", flush=True)
     reference = reference_value(expectation, scene.folder)

@@ -99,6 +99,11 @@ class ChildRun:
         except SceneError:  # the scene has changed, and refuses now what it took before
             return None
         same = parse(folder / SCENE) == scene.resolved
+        if same and scene.beginning:
+            # Only scenes that begin from another run load HDF5.
+            from quintet.coupler.files.states import hash_of
+
+            same = run.get("begin_from", {}).get("hash") == hash_of(scene.beginning.path)
         done = same and run.get("status") == "done" and run.get("machine") == machine()
         return run if done else None
 

@@ -15,6 +15,7 @@ from typing import Any
 from quintet.coupler.files.disk import write_whole
 from quintet.coupler.files.json_file import JsonFile
 from quintet.coupler.files.recording import Recording
+from quintet.coupler.files.run_files import REPORT
 from quintet.coupler.measures.ensemble_statistics import QUANTILES, Band, band, statistics
 from quintet.coupler.measures.evaluation import curve, reference_curve, reference_value
 from quintet.coupler.measures.expectation import Expectation
@@ -135,7 +136,7 @@ def ensemble(
         )
     products = draw_settings(variants.ensemble, seed, runs)
     name, planned = plan("ensemble", asked, products, jobs, retry)
-    folder = share("ensemble", name, (NAME, TABLE, RUNS, PICTURE, JOURNAL), out)
+    folder = share("ensemble", name, (NAME, TABLE, RUNS, PICTURE, JOURNAL, REPORT), out)
     sampled = Ensemble(name, folder, seed, _distributions(variants.ensemble))
     axes = [Axis(key, ()) for key in products[0]]
     print(f"{name}: {runs} runs, {jobs} at once, in {folder}", flush=True)

@@ -12,6 +12,7 @@ from typing import Any
 
 from quintet.coupler.files.disk import write_whole
 from quintet.coupler.files.json_file import JsonFile
+from quintet.coupler.files.run_files import REPORT
 from quintet.coupler.report import marked_place
 from quintet.coupler.report.show import console
 from quintet.coupler.report.stability_map import PICTURE, draw_maps
@@ -45,7 +46,8 @@ class Searches:
             for number, other in enumerate(limit.others()):
                 place = folder / limit.folder
                 place = place if other is None else place / folder_name(f"{other:.6g}")
-                search = Search(limit, other, self._child(scene, limit), place, self._keeps())
+                keep = not self.options.force
+                search = Search(limit, other, self._child(scene, limit), place, keep)
                 is_complete = find_limit(search)
                 summaries.append(summary(search, limit.predicted(number), is_complete))
                 if not is_complete:
@@ -58,9 +60,6 @@ class Searches:
         asked = (scene, options.preset, options.settings, options.swap, transport)
         return ChildRun(*asked, self.stop, force=True)
 
-    def _keeps(self) -> bool:
-        return not self.options.force
-
 
 def run_stability(options: argparse.Namespace) -> int:
     """Find every limit of the scene, or of all; print them, and write them as JSON."""
@@ -72,20 +71,22 @@ def run_stability(options: argparse.Namespace) -> int:
         raise SceneError("--readme is for --all. Add --all, or remove it.")
     asked = (options.scene, options.preset, options.settings, options.swap, options.transport)
     scene, variants = load_variants(*asked)
-    wanted = JsonFile(options.json, KEYS)
+    wanted = JsonFile(options.json, KEYS, kind=dict)
     if not variants.stability:
         raise SceneError(
             f"{scene.path.name}: there is no limit to be found. Add a [[stability]] for each."
         )
-    name, files = scene.file.name, (NAME, PICTURE)
+    name, files = scene.file.name, (NAME, PICTURE, REPORT)
     folder = options.out or Path("runs") / f"{name}-stability"
     with begin_series("stability", name, files, folder, options.force, keep=True) as place:
+        _require_same(options, name, place.path)
         discard_former(place.path)
         stop = StopRequest()
         with stop.listening():
             limits = Searches(options, stop).find(options.scene, variants.stability, place.path)
-        _show(_write(name, limits, place.path))
-        wanted.write({"scene": name, "limits": limits, "machine": results.machine()})
+        content = _write(name, limits, place.path, _asked(options))
+        wanted.write(content)
+        _show(content, place.path)
     return results.INTERRUPTED if stop() else _status(limits)
 
 
@@ -96,7 +97,7 @@ def _run_all(options: argparse.Namespace) -> int:
         raise SceneError(
             f"stability --all takes no {', '.join(wrong)}. Remove it, or name a scene."
         )
-    wanted = JsonFile(options.json, KEYS)
+    wanted = JsonFile(options.json, KEYS, kind=list)
     if options.readme:
         marked_place.LIMITS.check(options.readme)
     before = json.loads(options.json.read_text("utf-8") or "[]") if _is_there(options.json) else []
@@ -111,16 +112,34 @@ def _run_all(options: argparse.Namespace) -> int:
             summaries = Searches(options, stop).find(name, limits, folder / name)
             if stop():
                 break
-            content[name] = _write(name, summaries, folder / name)
-            _show(content[name])
+            content[name] = _write(name, summaries, folder / name, _asked(options))
             ordered = [content[scene] for scene in sorted(content)]
             wanted.write(ordered)
             write_whole(folder / NAME, json.dumps(ordered, indent=2))
             if options.readme:
                 marked_place.LIMITS.put(options.readme, "\n".join(markdown(ordered)))
+            _show(content[name], folder / name)
     if stop():
         return results.INTERRUPTED
     return _status([limit for scene in content.values() for limit in scene["limits"]])
+
+
+def _asked(options: argparse.Namespace) -> Found:
+    """What was asked for beside the scene itself."""
+    return {"preset": options.preset, "settings": options.settings, "swaps": options.swap}
+
+
+def _require_same(options: argparse.Namespace, scene: str, folder: Path) -> None:
+    """Refuse a folder with limits of another scene or other settings, unless they are replaced."""
+    path = folder / NAME
+    if options.force or not path.is_file():
+        return
+    former = json.loads(path.read_text("utf-8"))
+    if former["scene"] != scene or former.get("asked", _asked(options)) != _asked(options):
+        raise SceneError(
+            f"--out {folder}: it holds limits of {former['scene']} with other settings. Name "
+            "another folder, or replace them with --force."
+        )
 
 
 def _is_there(path: Path | None) -> bool:
@@ -134,17 +153,18 @@ def _cheapest_first() -> list[str]:
     return sorted(minutes, key=lambda name: (minutes[name], name))
 
 
-def _write(scene: str, limits: list[Found], folder: Path) -> Found:
-    """Write the limits of a scene and the maps of those in two parameters; return the content."""
-    content = {"scene": scene, "limits": limits, "machine": results.machine()}
+def _write(scene: str, limits: list[Found], folder: Path, asked: Found) -> Found:
+    """Write the limits of a scene; return the content."""
+    content = {"scene": scene, "asked": asked, "limits": limits, "machine": results.machine()}
     write_whole(folder / NAME, json.dumps(content, indent=2))
-    if drawn := draw_maps(scene, limits, folder / PICTURE):
-        print(f"drawn in {drawn}")
     return content
 
 
-def _show(content: Found) -> None:
+def _show(content: Found, folder: Path) -> None:
+    """Print the limits, and draw the maps of those in two parameters."""
     print_limits(content["limits"], console())
+    if drawn := draw_maps(content["scene"], content["limits"], folder / PICTURE):
+        print(f"drawn in {drawn}")
 
 
 def _status(limits: list[Found]) -> int:

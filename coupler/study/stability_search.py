@@ -18,6 +18,7 @@ from quintet.coupler.study.bisection import bisect, middle
 from quintet.coupler.study.child_run import FOREVER, ChildRun
 from quintet.coupler.study.invariants import Verdict, judge
 from quintet.coupler.study.run_hash import run_hash
+from quintet.coupler.study.sweep_run import was_killed
 from quintet.interfaces.errors import SceneError
 
 VERDICTS = "verdicts.json"  # in the folder of a limit
@@ -28,7 +29,7 @@ Found = dict[str, Any]
 
 
 class Interrupted(Exception):
-    """The search was interrupted by a signal."""
+    """The search was interrupted by a signal, or a run was killed from outside."""
 
 
 @dataclass(slots=True)
@@ -70,7 +71,7 @@ class Search:
         """Run with a value; return the verdict, and how long it took [s]."""
         began, folder = time.monotonic(), self.folder / f"{value:.6g}"
         run = self.child.run(self.limit.settings(value, self.other), folder, self.time_limit)
-        if run["status"] == "interrupted" or self.child.stop():
+        if self.child.stop() or was_killed(run):
             raise Interrupted
         verdict = judge(self.limit.table, run, folder)
         return {"seconds": time.monotonic() - began, "verdict": asdict(verdict)}
@@ -114,7 +115,7 @@ def summary(search: Search, predicted: float | None, is_complete: bool = True) -
         "degraded": _known_boundary(search, "stable"),
     }
     state = next((state for state, edge in edges.items() if edge), None)
-    edge = edges[state] if state else None
+    edge = edges[state] if state and is_complete else None
     boundary = middle(*edge, keys.log) if edge else None
     verdict = search.verdicts.get(edge[1] if edge else keys.from_, Verdict("stable"))
     degraded = edges["degraded"] if state == "unstable" else None
@@ -129,7 +130,7 @@ def summary(search: Search, predicted: float | None, is_complete: bool = True) -
         "ratio": boundary / predicted if boundary is not None and predicted else None,
         "holds": edge[0] if edge else None,
         "breaks": edge[1] if edge else None,
-        "state": state,
+        "state": state if is_complete else None,
         "broke": verdict.broke or None,
         "how": verdict.how or None,
         "degraded": middle(*degraded, keys.log) if degraded and was_degraded else None,

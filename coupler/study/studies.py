@@ -39,7 +39,7 @@ Row = dict[str, Any]
 def run_all(options: argparse.Namespace) -> int:
     """Run what is quick and not complete, as far as the time goes; return the exit status."""
     _refuse_single(options)
-    wanted = JsonFile(options.json, ("scene", "rows"))
+    wanted = JsonFile(options.json, ("scene", "rows"), kind=list)
     if options.readme:
         marked_place.STUDIES.check(options.readme)
     before = read_studies(options.json)

@@ -12,7 +12,7 @@ from typing import Any
 
 from quintet.coupler.files.disk import write_whole
 from quintet.coupler.files.json_file import JsonFile
-from quintet.coupler.files.run_files import RESULTS
+from quintet.coupler.files.run_files import REPORT, RESULTS
 from quintet.coupler.report import show
 from quintet.coupler.report.study_tables import costs_and_errors, orders, shares
 from quintet.coupler.report.work_precision import draw
@@ -39,7 +39,7 @@ def run_study(options: argparse.Namespace) -> int:
     _check_options(options)
     asked = (options.scene, options.preset, options.settings, options.swap, options.transport)
     scene, variants = load_variants(*asked)
-    wanted = JsonFile(options.json, ("scene", "rows"))
+    wanted = JsonFile(options.json, ("scene", "rows"), kind=dict)
     if not variants.study:
         raise SceneError(f"{scene.path.name}: there is no [[study]]. Add one for every refinement.")
     folders = [refinement.folder for refinement in variants.study]
@@ -47,7 +47,7 @@ def run_study(options: argparse.Namespace) -> int:
         raise SceneError(
             f"study: with --run no refinement may have the label {EXTRAPOLATED}. Rename it."
         )
-    files = (NAME, PICTURE)
+    files = (NAME, PICTURE, REPORT)
     with begin_series(
         "study", scene.file.name, files, options.out, options.force, options.keep
     ) as place:

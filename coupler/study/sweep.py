@@ -11,6 +11,7 @@ from pathlib import Path
 
 from quintet.coupler.files.disk import write_whole
 from quintet.coupler.files.json_file import JsonFile
+from quintet.coupler.files.run_files import REPORT
 from quintet.coupler.launch.processes import PYTHON
 from quintet.coupler.report.show import console
 from quintet.coupler.report.sweep_report import draw, table, write_csv
@@ -104,7 +105,7 @@ def _write_rules(options: argparse.Namespace, asked: Asked, axes: Sequence[Axis]
 
     snakefile.check_place(options.snakefile)
     scene, planned = plan("sweep", asked, combinations(axes), 1, options.retry)
-    folder = share("sweep", scene, (NAME, TABLE, PICTURE, JOURNAL), options.out)
+    folder = share("sweep", scene, (NAME, TABLE, PICTURE, JOURNAL, REPORT), options.out)
     jobs = [replace(job, place=folder) for job in planned]
     words = [*run_arguments(*asked), *(w for text in options.over for w in ("--over", text))]
     command = [*PYTHON, "-m", "quintet.coupler.cli", "sweep", *words, "--out", str(folder)]
@@ -140,7 +141,7 @@ def sweep(
     """
     check_numbers("sweep", jobs, retry)
     scene, planned = plan("sweep", asked, combinations(axes), jobs, retry)
-    folder = share("sweep", scene, (NAME, TABLE, PICTURE, JOURNAL), out)
+    folder = share("sweep", scene, (NAME, TABLE, PICTURE, JOURNAL, REPORT), out)
     swept = Sweep(scene, folder, axes_of_jobs(axes, planned))
     tasks = [replace(job, place=folder) for job in planned]
     print(f"{scene}: {len(tasks)} runs, {jobs} at once, in {folder}", flush=True)

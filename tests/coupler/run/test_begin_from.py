@@ -10,6 +10,7 @@ from started import write_scene
 
 from quintet.coupler.cli import main
 from quintet.coupler.files.states import hash_of, states_of
+from quintet.coupler.run import simulate
 from quintet.coupler.scene.read import load
 from quintet.coupler.study.run_hash import run_hash
 from quintet.interfaces.errors import SceneError
@@ -133,6 +134,36 @@ def test_results_name_the_run_begun_from(tmp_path):
     assert told["components"] == ["ping", "pong"]
 
 
+def test_a_run_is_kept_though_the_one_that_it_began_from_is_gone(tmp_path, monkeypatch):
+    scene = write_scene(tmp_path)
+    first = run(scene, tmp_path / "first", "end=0.01", "output.states=[1.0]")
+    evaluate = simulate.results.outcomes
+
+    def then_gone(*arguments):
+        first.rename(tmp_path / "moved")
+        return evaluate(*arguments)
+
+    monkeypatch.setattr(simulate.results, "outcomes", then_gone)
+    again = run(scene, tmp_path / "again", f'begin_from="{first}"', "end=0.01")
+    assert json.loads((again / "results.json").read_text())["begin_from"]["run"] == str(first)
+
+
+def test_the_folder_that_it_begins_from_is_not_replaced(tmp_path, capsys):
+    scene = write_scene(tmp_path)
+    first = run(scene, tmp_path / "first", "end=0.01", "output.states=[1.0]")
+    begun = ("--set", f'begin_from="{first}"', "--out", first, "--force")
+    assert status("run", scene, *begun) == 2
+    assert "it must be another folder than that of begin_from" in capsys.readouterr().err
+    assert (first / "results.json").is_file() and states_of(first)
+
+
+def test_a_component_that_is_no_table_is_told(tmp_path):
+    scene = write_scene(tmp_path)
+    first = run(scene, tmp_path / "first", "end=0.01", "output.states=[1.0]")
+    with pytest.raises(SceneError, match=r"components\.pong"):
+        load(str(scene), settings=[f'begin_from="{first}"', "components.pong=3"])
+
+
 def test_the_hash_of_a_run_covers_the_state_that_it_begins_from(tmp_path):
     scene = write_scene(tmp_path)
     two_stages(scene, tmp_path, 0.01)
@@ -157,7 +188,6 @@ def test_a_folder_may_be_named_from_the_scene_or_from_here(tmp_path, monkeypatch
 
 def test_an_interrupted_second_stage_is_resumed_with_the_same_bits(tmp_path, monkeypatch):
     from quintet.coupler.run import snapshots
-    from quintet.coupler.run.simulate import make_folder, simulate
 
     scene = write_scene(tmp_path)
     whole, _ = two_stages(scene, tmp_path, 0.03)
@@ -165,10 +195,10 @@ def test_an_interrupted_second_stage_is_resumed_with_the_same_bits(tmp_path, mon
     settings = [f'begin_from="{tmp_path / "first"}"', "end=0.03", "output.snapshots=0.01"]
     checked = load(str(scene), settings=settings)
     folder = tmp_path / "resumed"
-    make_folder(checked, folder)
-    assert simulate(checked, folder) == 0
+    simulate.make_folder(checked, folder)
+    assert simulate.simulate(checked, folder) == 0
     snapshot = folder / "snapshot-20.h5"
-    assert simulate(load(str(scene), settings=settings), folder, snapshot) == 0
+    assert simulate.simulate(load(str(scene), settings=settings), folder, snapshot) == 0
     assert is_the_end_of(folder, whole)
 
 

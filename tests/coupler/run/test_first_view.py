@@ -62,3 +62,23 @@ def test_a_picture_that_is_there_is_kept_unless_forced(
 def test_a_picture_needs_a_known_ending(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert status("taylor_bar", "--picture", str(tmp_path / "start.txt")) == 2
     assert "it must end with one of .png" in capsys.readouterr().err
+
+
+def test_code_of_a_scene_is_not_imported_for_a_picture(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "evil.py").write_text("raise AssertionError('it was imported')")
+    scene = tmp_path / "scene.toml"
+    scene.write_text('name = "evil"\nend = 1.0\n[components.a]\nkind = "evil:Class"\n')
+    drawn = tmp_path / "start.png"
+    assert status(str(scene), "--picture", str(drawn)) == 2
+    assert "evil:Class is code that check does not import by itself" in capsys.readouterr().err
+    assert not drawn.exists()
+
+
+def test_a_picture_whose_folder_is_a_file_is_refused(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "file").write_text("mine")
+    assert status("two_springs", "--import", "--picture", str(tmp_path / "file/start.png")) == 2
+    assert "it must lie in a folder" in capsys.readouterr().err

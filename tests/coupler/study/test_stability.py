@@ -4,17 +4,20 @@ import csv
 import json
 from functools import partialmethod
 from io import StringIO
+from types import SimpleNamespace
 
 import pytest
 from rich.console import Console
 from spring_scene import command, found_by, write
 
+from quintet.coupler.report.stability_map import draw_maps
 from quintet.coupler.report.stability_tables import markdown, print_limits
 from quintet.coupler.scene.read import load_variants
 from quintet.coupler.scene.stability_table import LimitTable
 from quintet.coupler.study import stability
 from quintet.coupler.study.bisection import bisect
 from quintet.coupler.study.invariants import energies, judge
+from quintet.coupler.study.stability_search import VERDICTS, Search, find_limit, summary
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.params import read
 
@@ -84,10 +87,34 @@ def test_nothing_is_run_twice_and_a_map_is_drawn(tmp_path, capsys):
 def test_a_search_that_was_ended_says_so():
     limit = {"name": "step", "against": None, "found": 0.2, "broke": "energy", "how": "it rose"}
     limit |= {"predicted": None, "ratio": None, "degraded": None, "state": "unstable"}
-    for complete, words in ((True, "step: energy: it rose"), (False, "ended after 2 runs")):
+    for complete, words in ((True, "step: energy: it rose"), (False, "interrupted after 2 runs")):
         screen = Console(file=StringIO(), width=200)
         print_limits([limit | {"complete": complete, "runs": [{}, {}]}], screen)
         assert words in screen.file.getvalue()
+
+
+def test_limits_of_other_settings_are_not_replaced(tmp_path, capsys):
+    path = write(tmp_path, limits(STEP + "from = 0.15\nto = 0.25\naccuracy = 0.5\n" + INSIDE))
+    out = ("--out", tmp_path / "all")
+    assert command("stability", path, *out, "--set", "end=2.0") in (0, 1)
+    assert command("stability", path, *out, "--set", "end=3.0") == 2
+    assert "it holds limits of spring with other settings" in capsys.readouterr().err
+    assert command("stability", path, *out, "--set", "end=3.0", "--force") in (0, 1)
+
+
+def test_a_run_that_was_killed_from_outside_is_no_verdict(tmp_path):
+    (variant,) = load_variants(str(write(tmp_path, limits(STEP + RANGE + INSIDE))))[1].stability
+    child = SimpleNamespace(
+        scene=str(tmp_path / "scene.toml"), preset="", settings=[], swaps=[], transport="memory",
+        stop=lambda: False, run=lambda *_: {"status": "failed", "exit": -9},
+    )  # fmt: skip
+    (tmp_path / "runs").mkdir()
+    search = Search(variant, None, child, tmp_path / "runs", True)
+    assert not find_limit(search) and not search.verdicts
+    assert not (tmp_path / "runs" / VERDICTS).exists()
+    found = summary(search, None, False)
+    assert found["found"] is None and not found["complete"]
+    assert draw_maps("spring", [found | {"against": {"mass": 1.0}}], tmp_path / "map.png") is None
 
 
 def test_limits_of_all_scenes_make_a_table(tmp_path, monkeypatch, capsys):
@@ -116,6 +143,10 @@ def test_limits_of_all_scenes_make_a_table(tmp_path, monkeypatch, capsys):
     assert command("stability", "--all", "--set", "end=1.0") == 2
     assert "stability --all takes no --set" in capsys.readouterr().err
     assert command("stability") == 2 and "a scene or --all" in capsys.readouterr().err
+    alone = tmp_path / "alone.json"
+    alone.write_text(json.dumps(content[0]))
+    assert command("stability", "--all", "--json", alone) == 2
+    assert "what this command left there before" in capsys.readouterr().err
 
 
 def by_name(searches, find, scenes, name, *rest):
