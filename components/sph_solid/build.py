@@ -92,7 +92,7 @@ def initial_state(params: SphSolidParams, laws: list[Solid], numbers: list[int])
         force=np.zeros((glued, 3)),
         ranges=np.zeros((3, 2)),
         sums=np.zeros(3),
-        viscous=np.zeros(2),
+        viscous=np.zeros(3),
         torn=np.zeros(5),
     )
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from quintet.components.shared.threads import Team
 from quintet.components.sph_solid import MANIFEST
+from quintet.components.sph_solid.begin import restarted
 from quintet.components.sph_solid.build import gauged, initial_state, materials, pair_law
 from quintet.components.sph_solid.diagnostics import check, failure, totals
 from quintet.components.sph_solid.features import pair_sums, partner_faces, ranks
@@ -21,7 +22,7 @@ from quintet.components.sph_solid.kernels.motion import (
 )
 from quintet.components.sph_solid.kernels.pairs import Forces
 from quintet.components.sph_solid.materials import Materials
-from quintet.components.sph_solid.method import viscosity_note
+from quintet.components.sph_solid.method import method, viscosity_note
 from quintet.components.sph_solid.neighbours import SolidLists
 from quintet.components.sph_solid.params import SphSolidParams
 from quintet.components.sph_solid.ports import SHOWS
@@ -266,6 +267,11 @@ class SphSolid(Component):
         if self.faces:
             self.faces.penalty.load(state)
         self._list()
+
+    def begin_from(self, state: Fields) -> None:
+        """Begin from the state of another run of the same particles; judge from here on."""
+        settings = self.params.spacing, method(self.params).total_lagrangian
+        self.load(restarted(state, self.state, self.all_ranks, *settings))
 
     def totals(self) -> Totals:
         """Mass, momentum and energies, without the motion of particles that a mesh carries."""

@@ -125,7 +125,10 @@ class Judge:
             internal = self.laws[k].density * state.volume[rows] * state.energy[rows]
             unstored = internal - stored_energy(state, rows, self.laws[k])
             heat += float(ranks.sums(state, [unstored])[0])
-        state.viscous[:] = heat, min(heat, state.viscous[1])
+        if state.steps == 0:  # of this run: the state may be that of another
+            state.viscous[2] = heat
+        heat -= state.viscous[2]
+        state.viscous[:2] = heat, min(heat, state.viscous[1])
 
     def warnings(self, state: State, ranks: Ranks) -> dict[str, str]:
         """Reasons why the results may be wrong, by subject."""

@@ -41,7 +41,7 @@ class State:
     force: Array  # (glued, 3) N, on glued particles now
     ranges: Array  # (3, 2) J, least and greatest kinetic, potential and internal energy so far
     sums: Array  # (3,) J, sum of energies less work from outside: first, least, greatest
-    viscous: Array  # (2,) J, heat of viscosity in elastic bodies: now, and least so far
+    viscous: Array  # (3,) J, heat of viscosity in elastic bodies: now, least, and before the run
     torn: Array  # (5,) 1, s, m, m, m: most bonds lost at a time; when and where the first was lost
     reach: float = 0.0  # m, of the neighbour list
     bound: float = 0.0  # s, stable step of all particles
