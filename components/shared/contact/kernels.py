@@ -68,6 +68,7 @@ class Sums(NamedTuple):
     dissipated: float  # J, by friction in this step
     half_kick: float  # J, that half of a step's force would add to the kinetic energy
     rate: float  # 1/s2, largest row sum of stiffness over mass of a particle that is near
+    turning: float  # 1/s2, largest k (1/m + R²/I) of one that turns
     depth: float  # m, deepest penetration
 
 
@@ -237,7 +238,7 @@ def touch(
         Added to.
     """
     x, room, n, weight = np.empty((4, 3)), np.empty((3, 3)), np.empty(3), np.empty(4)
-    slid, at = np.empty(3), np.empty(3)
+    slid, at, turning = np.empty(3), np.empty(3), 0.0
     energy, dissipated, rate, deepest, half_kick = 0.0, 0.0, 0.0, 0.0, 0.0
     for q in range(near.row.shape[0]):
         i, radius = near.row[q], points.radius[near.row[q]]
@@ -258,6 +259,9 @@ def touch(
                 surface.modulus[face], surface.stiffness[face],
             )  # fmt: skip
             rate = max(rate, 2.0 * stiff / points.mass[i])
+            if points.spin.shape[0]:
+                mobility = 1.0 / points.mass[i] + radius * radius * points.inverse_moment[i]
+                turning = max(turning, stiff * mobility)
             for c in range(4):
                 loads.stiffness[surface.corner[face, c]] += 2.0 * stiff * weight[c]
         if gap >= 0.0:
@@ -291,4 +295,4 @@ def touch(
             points.spin[i, 0] += twist * (n[1] * slip[2] - n[2] * slip[1])
             points.spin[i, 1] += twist * (n[2] * slip[0] - n[0] * slip[2])
             points.spin[i, 2] += twist * (n[0] * slip[1] - n[1] * slip[0])
-    return Sums(energy, dissipated, half_kick, rate, deepest)
+    return Sums(energy, dissipated, half_kick, rate, turning, deepest)

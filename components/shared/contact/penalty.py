@@ -103,7 +103,9 @@ class PenaltyContact:
         numbers.work -= dt * float((self.reaction * self.velocity).sum())
         numbers.energy, numbers.half_kick = sums.energy, sums.half_kick
         numbers.dissipated += sums.dissipated
-        numbers.rate = max(sums.rate, float((stiffness / self.mass).max(initial=0.0)))
+        of_nodes = float((stiffness / self.mass).max(initial=0.0))
+        turning = sums.turning + 0.5 * of_nodes if sums.turning else 0.0
+        numbers.rate = max(sums.rate, of_nodes, turning)
         numbers.deepest = max(numbers.deepest, sums.depth)
 
     def _list(self, points: Points, moving: Array, dt: float) -> Near:
@@ -129,7 +131,8 @@ class PenaltyContact:
         """Largest step [s] of particles in contact, of which those without have a bound [s].
 
         Stiffnesses add up, so that ω² is at most the greater one of both sides, plus what contact
-        adds by its row sums (Gershgorin).
+        adds by its row sums (Gershgorin). Of spheres that stick and turn it is at most the largest
+        k (1/m + R²/I) of a sphere plus the largest Σ k N/m of a node.
         """
         if not self.numbers.rate:
             return math.inf

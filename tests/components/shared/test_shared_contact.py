@@ -154,6 +154,37 @@ def test_the_predicted_step_of_contact_is_where_it_becomes_unstable():
     assert _bounce(1.01) > 50.0
 
 
+def _roll(share, mass):
+    """Energies of a sphere that sticks to a face, over the first, in steps of a share of ours."""
+    node, face = NODES[[0, 1, 4, 3]].copy(), np.array([[0, 1, 2, 3]])
+    contact = _contact(1, node, face, mass=mass, friction=1e6)
+    points, along, energies = _points([(1.0, 1.0, RADIUS - 1e-3)]), 0.0, []
+    points = points._replace(spin=np.zeros((1, 3)), inverse_moment=np.array([2.5 / RADIUS**2]))
+    _take(contact, node)
+    contact.kick(points, 0.0)
+    dt = share * contact.stable_step(1e9)
+    points.velocity[0] = 1e-6, 0.0, 0.0
+    for _ in range(400):
+        _take(contact, node)
+        contact.kick(points, dt)
+        points.velocity[0, 2] = 0.0  # held in height
+        along += dt * contact.reaction[:, 0].sum() / (4.0 * mass)
+        node[:, 0] += dt * along
+        points.place[0, 0] += dt * points.velocity[0, 0]
+        spin = (points.spin[0, 1] * RADIUS) ** 2 / 2.5
+        energies.append(points.velocity[0, 0] ** 2 + spin + 4.0 * mass * along**2)
+    return np.array(energies) / 1e-12
+
+
+@pytest.mark.parametrize("mass", [0.25, 1e9])  # of a node
+def test_the_predicted_step_is_where_a_sphere_that_sticks_becomes_unstable(mass):
+    energies = _roll(0.95, mass)
+    # Velocities of a step's middle exceed those of the motion by 1/√(1 - (ω dt/2)²).
+    assert energies.max() < 1.0 / (1.0 - 0.95**2)
+    assert energies[200:].max() < 1.01 * energies[:200].max()
+    assert _roll(1.01, mass).max() > 1e3
+
+
 def test_a_particle_near_a_face_limits_the_step_before_it_touches():
     contact = _contact(2)
     for height, limits in ((1.2, False), (0.9, True)):
