@@ -22,6 +22,7 @@ class PartnerFaces:
         moduli = np.array([modulus(material) for material in params.materials.values()])
         self.modulus, self.count = moduli[model.material[rows]], count
         self.penalty = PenaltyContact(static, count, float(self.radius.max()))
+        self.penalty.start(state.motion[rows, VELOCITY : VELOCITY + 3])
 
     def kick(self, state: State, dt: float) -> None:
         """Change velocities by contact in a step of dt [s], with its forces at the begin."""

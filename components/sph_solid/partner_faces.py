@@ -17,6 +17,7 @@ class PartnerFaces:
 
     def __init__(self, static: Fields, state: State, laws: list[Solid], spacing: float) -> None:
         self.penalty = PenaltyContact(static, state.particles, 0.5 * spacing)
+        self.penalty.start(state.velocity)
         self.radius = np.full(state.particles, 0.5 * spacing)
         self.modulus = np.array([law.bulk + 4.0 / 3.0 * law.shear for law in laws])
 

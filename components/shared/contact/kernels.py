@@ -70,6 +70,7 @@ class Sums(NamedTuple):
     rate: float  # 1/s2, largest row sum of stiffness over mass of a particle that is near
     turning: float  # 1/s2, largest k (1/m + R²/I) of one that turns
     depth: float  # m, deepest penetration
+    limit: float  # s, in which one that is near comes half of the way to a radius below its face
 
 
 @njit(**EXACT)
@@ -202,7 +203,7 @@ def gap_of(p, x, xi, eta, radius, room, n):  # type: ignore[no-untyped-def]
     """Gap [m] between a particle and a face, ∞ where they cannot touch; direction into `n` (3,).
 
     Above the face the direction is that from its nearest point; a particle whose centre is below
-    the face, by a radius at most, is pushed along the normal.
+    the face is pushed along the normal, if it is by a radius at most.
     """
     place_on(x, xi, eta, room)
     normal_at(x, room, n)
@@ -216,7 +217,7 @@ def gap_of(p, x, xi, eta, radius, room, n):  # type: ignore[no-untyped-def]
             n[d] = (p[d] - room[0, d]) / distance
         return distance - radius
     beside = math.sqrt(max(square - above * above, 0.0))
-    return above - radius if beside <= ON * radius and above >= -radius else math.inf
+    return above - radius if beside <= ON * radius else math.inf
 
 
 @njit(**EXACT)
@@ -238,7 +239,7 @@ def touch(
         Added to.
     """
     x, room, n, weight = np.empty((4, 3)), np.empty((3, 3)), np.empty(3), np.empty(4)
-    slid, at, turning = np.empty(3), np.empty(3), 0.0
+    slid, at, turning, limit = np.empty(3), np.empty(3), 0.0, math.inf
     energy, dissipated, rate, deepest, half_kick = 0.0, 0.0, 0.0, 0.0, 0.0
     for q in range(near.row.shape[0]):
         i, radius = near.row[q], points.radius[near.row[q]]
@@ -251,6 +252,8 @@ def touch(
         if face >= 0:
             gather(surface, face, x)
             gap = gap_of(at, x, xi, eta, radius, room, n)
+            if gap < -2.0 * radius:  # it has passed through
+                deepest, gap = max(deepest, -gap), math.inf
         if gap <= radius:
             weight[0], weight[1] = 0.25 * (1.0 - xi) * (1.0 - eta), 0.25 * (1.0 + xi) * (1.0 - eta)
             weight[2], weight[3] = 0.25 * (1.0 + xi) * (1.0 + eta), 0.25 * (1.0 - xi) * (1.0 + eta)
@@ -262,17 +265,21 @@ def touch(
             if points.spin.shape[0]:
                 mobility = 1.0 / points.mass[i] + radius * radius * points.inverse_moment[i]
                 turning = max(turning, stiff * mobility)
+            closing = 0.0
+            for d in range(3):
+                moved = 0.0
+                for c in range(4):
+                    moved += weight[c] * surface.velocity[surface.corner[face, c], d]
+                slid[d] = last * (points.velocity[i, d] - moved)
+                closing -= n[d] * (points.velocity[i, d] - moved)
+            if closing > 0.0:
+                limit = min(limit, 0.5 * (max(gap, 0.0) + radius) / closing)
             for c in range(4):
                 loads.stiffness[surface.corner[face, c]] += 2.0 * stiff * weight[c]
         if gap >= 0.0:
             slip[0], slip[1], slip[2] = 0.0, 0.0, 0.0
             continue
         push = -stiff * gap
-        for d in range(3):
-            moved = 0.0
-            for c in range(4):
-                moved += weight[c] * surface.velocity[surface.corner[face, c], d]
-            slid[d] = last * (points.velocity[i, d] - moved)
         lever = radius + gap  # m, from the centre to the face, against the normal
         if points.spin.shape[0]:
             wx, wy, wz = points.spin[i, 0], points.spin[i, 1], points.spin[i, 2]
@@ -295,4 +302,4 @@ def touch(
             points.spin[i, 0] += twist * (n[1] * slip[2] - n[2] * slip[1])
             points.spin[i, 1] += twist * (n[2] * slip[0] - n[0] * slip[2])
             points.spin[i, 2] += twist * (n[0] * slip[1] - n[1] * slip[0])
-    return Sums(energy, dissipated, half_kick, rate, turning, deepest)
+    return Sums(energy, dissipated, half_kick, rate, turning, deepest, limit)

@@ -35,6 +35,7 @@ class Numbers:
     # the present time should have half of it.
     half_kick: float = 0.0
     last: float = 0.0  # s, the last step
+    limit: float = math.inf  # s, of the next step, so that nothing passes through a face
 
     @property
     def brought(self) -> float:
@@ -73,6 +74,11 @@ class PenaltyContact:
         self.near: Near | None = None
         self.slack = 0.0  # m, that particles and faces may still approach each other by
 
+    def start(self, velocity: Array) -> None:
+        """Bound the first step by velocities (n, 3) m/s of the start, as if all were at a face."""
+        fastest = furthest_from(np.ascontiguousarray(velocity), np.zeros(3))
+        self.numbers.limit = 0.5 * self.radius / fastest if fastest > 0.0 else math.inf
+
     def take(self, fields: Fields) -> None:
         """Take places of nodes at a step's begin, velocities that work counts, active faces."""
         self.position = np.array(fields.get(POSITION, self.position))
@@ -94,7 +100,7 @@ class PenaltyContact:
         """
         nodes, numbers, last = len(self.mass), self.numbers, self.numbers.last
         moving = (self.position - self.before) / last if last else np.zeros((nodes, 3))
-        near = self._list(points, moving, last)
+        near, apart = self._list(points, moving, last)
         self.reaction, stiffness = np.zeros((nodes, 3)), np.zeros(nodes)
         surface = Surface(self.corner, self.active, *self.faces, self.position, moving)
         loads = Loads(self.reaction, stiffness, self.slip, self.kicked)
@@ -107,15 +113,21 @@ class PenaltyContact:
         turning = sums.turning + 0.5 * of_nodes if sums.turning else 0.0
         numbers.rate = max(sums.rate, of_nodes, turning)
         numbers.deepest = max(numbers.deepest, sums.depth)
+        numbers.limit = min(sums.limit, apart)
 
-    def _list(self, points: Points, moving: Array, dt: float) -> Near:
-        """List the faces near particles, if they may have changed in the last step, of dt [s]."""
+    def _list(self, points: Points, moving: Array, dt: float) -> tuple[Near, float]:
+        """List the faces near particles, if they may have changed in the last step, of dt [s].
+
+        Returns also the time [s] in which others, a radius away at least, come half of the way to
+        a radius below a face. It does not depend on when faces were listed.
+        """
+        mean = moving.mean(axis=0)
+        spread = furthest_from(points.velocity, mean) + furthest_from(moving, mean)
+        apart = self.radius / spread if spread > 0.0 and self.active.any() else math.inf
         if self.near is not None:
-            mean = moving.mean(axis=0)
-            spread = furthest_from(points.velocity, mean) + furthest_from(moving, mean)
             self.slack -= dt * spread
             if self.slack >= 0.0:
-                return self.near
+                return self.near, apart
         self.kicked[:] = 0.0
         self.slack, place = self.radius, self.position
         faces = np.flatnonzero(self.active)
@@ -125,19 +137,20 @@ class PenaltyContact:
         else:
             cells = cells_of(np.ascontiguousarray(place[self.corner[faces]]))
             self.near = list_near(points.place, 2.0 * self.radius + self.slack, cells, faces)
-        return self.near
+        return self.near, apart
 
     def stable_step(self, bound: float) -> float:
         """Largest step [s] of particles in contact, of which those without have a bound [s].
 
         Stiffnesses add up, so that ω² is at most the greater one of both sides, plus what contact
         adds by its row sums (Gershgorin). Of spheres that stick and turn it is at most the largest
-        k (1/m + R²/I) of a sphere plus the largest Σ k N/m of a node.
+        k (1/m + R²/I) of a sphere plus the largest Σ k N/m of a node. In a step no particle comes
+        more than half of the way to where it would pass through a face.
         """
         if not self.numbers.rate:
-            return math.inf
+            return self.numbers.limit
         square = max((2.0 / bound) ** 2, (2.0 / self.step_of_faces) ** 2) + self.numbers.rate
-        return self.safety * 2.0 / math.sqrt(square)
+        return min(self.numbers.limit, self.safety * 2.0 / math.sqrt(square))
 
     def save(self) -> Fields:
         """Copy out all state."""

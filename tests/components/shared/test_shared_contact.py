@@ -229,6 +229,40 @@ def test_deep_penetration_is_warned_of():
     assert "one went 0.7 m deep, and beyond 1 m" in contact.warnings()["contact"]
 
 
+def _fall(side, step):
+    """Strike a face from above or below at 100 m/s; steps [s] as told or as predicted."""
+    node, face = NODES[[0, 1, 4, 3]], np.array([[0, 1, 2, 3]])
+    contact = _contact(1, node, face if side > 0.0 else face[:, ::-1], mass=1e9)
+    points = _points([(1.0, 1.0, side * 4.0)], np.array([[0.0, 0.0, -side * 100.0]]), mass=0.1)
+    contact.start(points.velocity)
+    points.modulus[:] = 1e6  # Pa
+    contact.faces[0][:] = 1e6
+    for _ in range(200):
+        _take(contact, node)
+        dt = step or min(0.1, contact.stable_step(1.0))
+        contact.kick(points, dt)
+        points.place[:] += dt * points.velocity
+        if abs(points.place[0, 2]) > 4.5:
+            break
+    return side * points.velocity[0, 2], contact.warnings()
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_no_particle_passes_through_a_face_in_predicted_steps(side):
+    speed, warnings = _fall(side, None)
+    assert speed > 90.0 and not warnings
+    assert _fall(side, 0.03)[0] == -100.0  # it did not see the face
+
+
+def test_a_particle_that_has_passed_through_a_face_is_warned_of():
+    contact = _contact(1)
+    _take(contact)
+    contact.kick(_points([(1.0, 1.0, 0.7)]), 1e-3)
+    assert not contact.warnings()
+    contact.kick(_points([(1.0, 1.0, -0.7)]), 1e-3)
+    assert "one went 1.2 m deep, and beyond 1 m" in contact.warnings()["contact"]
+
+
 def test_what_is_saved_comes_back():
     contact, points = _contact(1, friction=0.5), _points([(1.0, 1.0, 0.3)], np.ones((1, 3)))
     _take(contact)
