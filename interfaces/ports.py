@@ -115,7 +115,7 @@ NODE_MASS = Port("node_mass", fields=(Field("added", (), "kg"),))
 # stiffness of contact follows from; the other side computes the forces and gives their reaction on
 # the nodes. Forces follow from places at the begin of a window, at which the mesh is told of them;
 # velocities cross as displacements over the last window, so that work is counted by what moved.
-# Faces that erosion opens are listed from the start and inactive until then.
+# Faces that erosion opens are not listed, so that nothing touches them: contact warns of it.
 PLACE = replace(POSITION, rate="")
 LAYER = (
     Field("mass", (), "kg"),  # of each node

@@ -58,6 +58,7 @@ class Loads(NamedTuple):
     force: Array  # (k, 3) N, on nodes; added to
     stiffness: Array  # (k,) N/m, row sums at nodes; added to
     slip: Array  # (any, 3) m, by the number of a particle: stretch of its tangential spring
+    held: Array  # (any,) J, likewise: energy of that spring
     kicked: Array  # (any, 3) m/s, likewise: half of what the step's force changes its velocity by
 
 
@@ -278,6 +279,7 @@ def touch(
                 loads.stiffness[surface.corner[face, c]] += 2.0 * stiff * weight[c]
         if gap >= 0.0:
             slip[0], slip[1], slip[2] = 0.0, 0.0, 0.0
+            dissipated, loads.held[number] = dissipated + loads.held[number], 0.0
             continue
         push = -stiff * gap
         lever = radius + gap  # m, from the centre to the face, against the normal
@@ -288,6 +290,7 @@ def touch(
             slid[2] -= last * lever * (wx * n[1] - wy * n[0])
         held, lost = friction(slip, slid, n, stiff, surface.friction[face] * push)
         energy, dissipated = energy - 0.5 * push * gap + held, dissipated + lost
+        loads.held[number] = held
         deepest = max(deepest, -gap)
         for d in range(3):
             force = push * n[d] - stiff * slip[d]

@@ -35,6 +35,7 @@ class Numbers:
     # the present time should have half of it.
     half_kick: float = 0.0
     last: float = 0.0  # s, the last step
+    opened: float = 0.0  # 1 once particles were near where faces have eroded
     limit: float = math.inf  # s, of the next step, so that nothing passes through a face
 
     @property
@@ -67,6 +68,7 @@ class PenaltyContact:
         self.before = np.zeros((nodes, 3))  # m, places of nodes at the last step's begin
         self.reaction = np.zeros((nodes, 3))  # N, on the nodes in the last step
         self.slip = np.zeros((particles, 3))  # m, by the number of a particle
+        self.held = np.zeros(particles)  # J, by the same: energy of tangential springs
         # m/s, by the same: what velocities at a step's end, which have none of the next force yet,
         # lack to be those of that time.
         self.kicked = np.zeros((particles, 3))
@@ -103,7 +105,7 @@ class PenaltyContact:
         near, apart = self._list(points, moving, last)
         self.reaction, stiffness = np.zeros((nodes, 3)), np.zeros(nodes)
         surface = Surface(self.corner, self.active, *self.faces, self.position, moving)
-        loads = Loads(self.reaction, stiffness, self.slip, self.kicked)
+        loads = Loads(self.reaction, stiffness, self.slip, self.held, self.kicked)
         sums = touch(points, surface, near, last, dt, loads)
         self.before, numbers.last = self.position.copy(), dt
         numbers.work -= dt * float((self.reaction * self.velocity).sum())
@@ -137,7 +139,25 @@ class PenaltyContact:
         else:
             cells = cells_of(np.ascontiguousarray(place[self.corner[faces]]))
             self.near = list_near(points.place, 2.0 * self.radius + self.slack, cells, faces)
+        self._let_go(points.identity[self.near.row])
+        self._note_opened(points)
         return self.near, apart
+
+    def _let_go(self, near: Array) -> None:
+        """Release the tangential springs of particles other than these; their energy is lost."""
+        left = np.ones(len(self.slip), bool)
+        left[near] = False
+        self.numbers.dissipated += float(self.held[left].sum())
+        self.slip[left], self.held[left] = 0.0, 0.0
+
+    def _note_opened(self, points: Points) -> None:
+        """Take down whether particles are near where faces have eroded."""
+        gone = np.flatnonzero(self.active == 0.0)
+        if self.numbers.opened or not len(gone) or not np.isfinite(self.position).all():
+            return
+        cells = cells_of(np.ascontiguousarray(self.position[self.corner[gone]]))
+        near = list_near(points.place, 2.0 * self.radius + self.slack, cells, gone)
+        self.numbers.opened = float(len(near.row) > 0)
 
     def stable_step(self, bound: float) -> float:
         """Largest step [s] of particles in contact, of which those without have a bound [s].
@@ -158,6 +178,7 @@ class PenaltyContact:
             f"{HEAD}before": self.before.copy(),
             f"{HEAD}reaction": self.reaction.copy(),
             f"{HEAD}slip": self.slip.copy(),
+            f"{HEAD}held": self.held.copy(),
             f"{HEAD}kicked": self.kicked.copy(),
             f"{HEAD}numbers": np.array(astuple(self.numbers)),
         }
@@ -167,16 +188,23 @@ class PenaltyContact:
         self.before = np.array(state[f"{HEAD}before"])
         self.reaction = np.array(state[f"{HEAD}reaction"])
         self.slip = np.array(state[f"{HEAD}slip"])
+        self.held = np.array(state[f"{HEAD}held"])
         self.kicked = np.array(state[f"{HEAD}kicked"])
         self.numbers = Numbers(*state[f"{HEAD}numbers"].tolist())
         self.near = None
 
     def warnings(self) -> dict[str, str]:
-        """Warn of particles that passed through faces, or nearly did."""
-        if not self.numbers.deepest > self.radius:
-            return {}
-        return {
-            "contact": "particles must stay outside of the faces that they touch; one went "
-            f"{self.numbers.deepest:.3g} m deep, and beyond {2.0 * self.radius:.3g} m it would "
-            "pass through. Raise the link's stiffness, or refine both sides."
-        }
+        """Warn of particles that passed through faces, or nearly did, and of eroded faces."""
+        texts = {}
+        if self.numbers.deepest > self.radius:
+            texts["contact"] = (
+                "particles must stay outside of the faces that they touch; one went "
+                f"{self.numbers.deepest:.3g} m deep, and beyond {2.0 * self.radius:.3g} m it would "
+                "pass through. Raise the link's stiffness, or refine both sides."
+            )
+        if self.numbers.opened:
+            texts["erosion"] = (
+                "faces that erosion opens are not touched; faces eroded where particles are near, "
+                "which may pass there. End the run before, or give the mesh no failure."
+            )
+        return texts

@@ -198,6 +198,25 @@ def test_an_eroded_face_is_not_touched():
     _take(contact, active=np.array([0.0, 1.0, 1.0]))
     contact.kick(points, 1.0)
     assert not points.velocity.any()
+    assert "faces that erosion opens are not touched" in contact.warnings()["erosion"]
+    far = _contact(1)
+    _take(far, active=np.array([0.0, 1.0, 1.0]))
+    far.kick(_points([(9.0, 9.0, 9.0)]), 1.0)
+    assert not far.warnings()
+
+
+def test_a_spring_whose_face_erodes_is_let_go_and_its_energy_is_lost():
+    contact, points = _contact(1, friction=9.0), _points([(1.0, 1.0, 0.3)], np.ones((1, 3)))
+    for _ in range(2):
+        _take(contact)
+        contact.kick(points, 1e-2)
+    stiff = 1.0 / (2.0 * RADIUS / MODULUS + THICK / MODULUS)
+    held, before = 0.5 * stiff * (contact.slip[0] ** 2).sum(), contact.numbers.dissipated
+    assert held > 0.0
+    _take(contact, active=np.zeros(3))
+    contact.kick(points, 1e-2)
+    assert not contact.slip.any() and not contact.held.any()
+    assert contact.numbers.dissipated - before == pytest.approx(held)
 
 
 def test_friction_holds_below_its_limit_and_slides_at_it():
