@@ -243,6 +243,11 @@ class DemBodiesParams:
             overlaps.check(self.placed, self.planes)
 
     def _require_spheres(self) -> None:
+        if self.contact_forces:
+            raise ValueError(
+                "contact_forces must be false with contact_with_faces, as port contact has no "
+                "forces of faces; found both true. Leave out contact_forces."
+            )
         for kind in self.placed.kinds:
             if self.dimensions == 2 or kind.radius is None or kind.locked:
                 raise ValueError(

@@ -5,7 +5,7 @@ import sys
 
 import numpy as np
 import pytest
-from dem_scenes import FLOOR, about, box, material, mistakes, params, run, sphere
+from dem_scenes import FLOOR, about, box, build, material, mistakes, params, run, sphere
 
 from quintet.components.dem_bodies import MANIFEST
 from quintet.components.dem_bodies.component import DemBodies
@@ -118,3 +118,12 @@ def test_steps_of_a_body_that_nothing_can_touch_are_planned_as_they_are(speed):
     lone, steps = DemBodies(given), []
     run(lone, 0.1, watch=steps.append)
     assert MANIFEST.plan(given).dt == pytest.approx(0.1 / len(steps), rel=0.5)
+
+
+def test_forces_of_contacts_are_refused_beside_faces_that_they_would_lack():
+    ball = sphere((0.0, 0.0, 0.1))
+    assert build([ball], contact_with_faces=True) and build([ball], contact_forces=True)
+    assert mistakes([ball], contact_with_faces=True, contact_forces=True) == [
+        "bodies: contact_forces must be false with contact_with_faces, as port contact has no forces "
+        "of faces; found both true. Leave out contact_forces."
+    ]
