@@ -91,9 +91,10 @@ def settings(prefix: str, parsed_args: argparse.Namespace, **_: Any) -> Words:
     begun = [path for path in paths if path.startswith(prefix)]
     # A single table is entered at once: the shell would put a space behind it.
     while len(begun) == 1 and begun[0].endswith("."):
-        begun = list(key_paths(table, begun[0].removesuffix("."))) or begun[0].split()
-        if begun == [prefix]:
+        inner = list(key_paths(table, begun[0].removesuffix(".")))
+        if not inner:
             break
+        begun = inner
     return begun
 
 

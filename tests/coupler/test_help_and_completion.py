@@ -69,6 +69,7 @@ CUBES = argparse.Namespace(scene="dam_break_cubes")
 PATHS = [
     ("", "components."),
     ("wind", "window="),
+    ("pres", "presets."),
     ("output.int", "output.interval="),
     ("components.", "components.cubes."),
     ("components.wa", "components.water.threads="),
