@@ -41,7 +41,9 @@ def as_source(mesh: Any) -> Source:
     points = np.zeros((len(raw), 3))
     points[:, : raw.shape[1]] = raw
     cells = [Cells(block.type, block.dim, np.asarray(block.data, np.int64)) for block in mesh.cells]
-    return Source(points, cells, dict(mesh.point_sets), dict(mesh.cell_sets))
+    # "gmsh:bounding_entities" lists entities of the geometry, not rows of cells.
+    cell_sets = {key: rows for key, rows in mesh.cell_sets.items() if not key.startswith("gmsh:")}
+    return Source(points, cells, dict(mesh.point_sets), cell_sets)
 
 
 def of_parts(name: str, source: Source, parts: Sequence[int | str]) -> Source:

@@ -132,6 +132,54 @@ def test_a_mesh_in_millimetres_is_asked_for_its_unit(tmp_path):
     assert note.endswith("1 elements, 8 nodes, 0.02 x 0.02 x 0.02 m.")
 
 
+# Entity 1 is bounded by surfaces 7, 8 and 9, which the file does not have.
+GMSH = """$MeshFormat
+4.1 0 8
+$EndMeshFormat
+$PhysicalNames
+1
+3 5 "bar"
+$EndPhysicalNames
+$Entities
+0 0 0 1
+1 0 0 0 1 1 1 1 5 3 7 8 9
+$EndEntities
+$Nodes
+1 8 1 8
+3 1 0 8
+1
+2
+3
+4
+5
+6
+7
+8
+0 0 0
+1 0 0
+1 1 0
+0 1 0
+0 0 1
+1 0 1
+1 1 1
+0 1 1
+$EndNodes
+$Elements
+1 1 1 1
+3 1 5 1
+1 1 2 3 4 5 6 7 8
+$EndElements
+"""
+
+
+def test_parts_of_gmsh_are_its_physical_groups(tmp_path):
+    (tmp_path / "bar.msh").write_text(GMSH)
+    whole, bar = (read(str(tmp_path / "bar.msh"), "refuse", parts) for parts in ((), ("bar",)))
+    for mesh in (whole, bar):
+        assert mesh.node.tolist() == CUBE.tolist()
+        assert {key: rows.tolist() for key, rows in mesh.groups.items()} == {"bar": [0]}
+
+
 def test_sets_that_lose_members_are_noted(tmp_path):
     node = np.concatenate([CUBE, [(9.0, 9.0, 9.0)]])
     sets = {"end": np.array([0, 1, 8])}
