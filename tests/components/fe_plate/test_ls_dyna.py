@@ -258,6 +258,18 @@ DEFECTS = {
     "velocity in a box": (BOTH + "*INITIAL_VELOCITY\n0,0,4\n1.,\n", "line 29: BOXID .*found 4"),
     "velocity of a node": (BOTH + "*INITIAL_VELOCITY_NODE\n9,1.\n", "line 29: NID must be a node"),
     "styp": (BOTH + "*INITIAL_VELOCITY_GENERATION\n3,5\n0.,\n", "line 29: STYP must be 1, 2 or 3"),
+    "velocity of no part": (
+        BOTH + "*INITIAL_VELOCITY_GENERATION\n5,2,,1.\n0.,\n",
+        "line 29: a velocity must be of a part of the file; found 5, which is none",
+    ),
+    "velocity of no part of a set": (
+        BOTH + "*SET_PART\n1\n3,5\n*INITIAL_VELOCITY_GENERATION\n1,1,,1.\n0.,\n",
+        "line 29: a set must list parts of the file; found 5, which is none",
+    ),
+    "velocity of an empty range": (
+        BOTH + "*SET_PART_LIST_GENERATE\n1\n5,9\n*INITIAL_VELOCITY_GENERATION\n1,1,,1.\n0.,\n",
+        "line 32: a velocity must be of parts of the file; found part set 1, which lists none",
+    ),
     "later": (
         BOTH + "*INITIAL_VELOCITY_GENERATION\n3,2\n,,,,,,1\n",
         "line 30: PHASE of initial velocities is not read and must be 0; found 1",

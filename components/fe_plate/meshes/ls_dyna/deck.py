@@ -50,6 +50,8 @@ class _Numbers:
         self.node_ids = np.array(list(entries.nodes), np.int64)
         self.solid_ids = np.array(list(entries.solids), np.int64)
         self.part = np.array([solid.part for solid in entries.solids.values()], np.int64)
+        shells = [shell.part for shell in entries.shells.values()]
+        self.part_ids = np.union1d(self.part, np.array([*shells, *entries.titles], np.int64))
         self.corner = self._corners(entries.solids, 8)
 
     def _corners(self, elements: dict[int, Element], count: int) -> Whole:
@@ -111,6 +113,9 @@ class _Numbers:
                 card.refuse("NID must be a node of the file", f"{number}", "Correct it.")
             return np.array([self.node_row[number]])
         if kind == "part":
+            if number not in self.part_ids:
+                rule = "a velocity must be of a part of the file"
+                card.refuse(rule, f"{number}, which is none", "Correct it, or add the part.")
             return _nodes_at(self.corner[self.part == number])
         if (kind, number) not in self.entries.sets:
             rule = f"it must name a {kind} of the file"
@@ -118,6 +123,9 @@ class _Numbers:
         listed = self.entries.sets[kind, number]
         if kind == "set":
             return _members(listed, self.node_ids, "node")
+        if not len(_members(listed, self.part_ids, "part")):
+            rule = "a velocity must be of parts of the file"
+            card.refuse(rule, f"part set {number}, which lists none", "Correct it, or add a part.")
         return _nodes_at(self.corner[_members(listed, self.part, "")])
 
     def _named_sets(self) -> tuple[dict[str, Whole], list[str]]:
