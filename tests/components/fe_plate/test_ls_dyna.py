@@ -233,7 +233,15 @@ WEDGE = f"{7:8d}{3:8d}" + "".join(f"{n:8d}" for n in [*FIRST[:4], *[FIRST[4]] * 
 TEN_NODES = f"{7:8d}{3:8d}\n" + "".join(f"{n:8d}" for n in NODES[:10])
 DEFECTS = {
     "no keyword": ("solid\n", "line 1: data must stand below a keyword; found solid"),
-    "no number": (bad(f"{10.0:16.8f}", f"{'ten':>16}"), "line 5: X must be a number; found ten"),
+    "no number": (bad(f"{10.0:16.8f}", f"{'ten':>16}"), "line 5: X must be a finite n.*found ten"),
+    "not finite": (bad(f"{10.0:16.8f}", f"{'nan':>16}"), "line 5: X must be a finite.*found nan"),
+    "too large": (bad(f"{10.0:16.8f}", f"{'1+999':>16}"), "line 5: X must be a fin.*found 1.999"),
+    "underscore": (bad(f"{10.0:16.8f}", f"{'1_0':>16}"), "line 5: X must be a fin.*found 1_0"),
+    "whole underscore": (bad(f"{7:8d}{3:8d}", f"{'1_1':>8}{3:8d}"), "line 21: EID .*found 1_1"),
+    "65 bits": (
+        BOTH + f"*NODE\n{2**63},0.,0.,0.\n",
+        "line 29: NID must be a whole number of 64 bits; found 9223372036854775808",
+    ),
     "parameter": (bad(f"{7:8d}{3:8d}", f"{7:8d}{'&part':>8}"), "line 21: PID must be a whole"),
     "tabulator": (bad(f"{7:8d}{3:8d}", "\t7\t3"), "line 21: .* fixed columns; found a tabulator"),
     "node twice": (bad(f"{103:8d}", f"{101:8d}"), "line 5: nodes must have .*found two 101, the"),

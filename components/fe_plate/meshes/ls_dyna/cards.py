@@ -5,15 +5,19 @@ characters, of 20 with `long=y` or + behind a keyword, of 10 in place of 8 with 
 free format on each line that has a comma.
 """
 
+import math
 import re
+from collections.abc import Callable
 from pathlib import Path
-from typing import NamedTuple, NoReturn
+from typing import NamedTuple, NoReturn, TypeVar
 
 from quintet.interfaces.errors import SceneError
 
+Value = TypeVar("Value", int, float)
 STANDARD, TEN, LONG = "standard", "ten", "long"
 MARKS = {"+": LONG, "%": TEN, "-": STANDARD}  # behind a keyword
 DEEPEST = 16  # files within each other
+MOST = 2**63 - 1  # whole numbers of arrays
 EXPONENT = re.compile(r"(?<=[\d.])[dDeE]?([+-]\d+)$")  # 1.5-3 and 1.5d-3 are 1.5e-3
 
 
@@ -49,23 +53,21 @@ class Card(NamedTuple):
 
     def whole(self, field: str, name: str) -> int:
         """Whole number in a field; 0 if it is blank."""
-        try:
-            return int(field or 0)
-        except ValueError:
+        number = _parsed(int, field)
+        if number is None or abs(number) > MOST:
             cure = "Correct it, or the columns that it stands in."
-            self.refuse(f"{name} must be a whole number", field, cure)
+            self.refuse(f"{name} must be a whole number of 64 bits", field, cure)
+        return number
 
     def number(self, field: str, name: str) -> float:
         """Return the number in a field; 0 if it is blank."""
-        try:
-            return float(field or 0)
-        except ValueError:
-            pass
-        try:
-            return float(EXPONENT.sub(r"e\1", field))
-        except ValueError:
+        number = _parsed(float, field)
+        if number is None:
+            number = _parsed(float, EXPONENT.sub(r"e\1", field))
+        if number is None or not math.isfinite(number):
             cure = "Correct it, or the columns that it stands in."
-            self.refuse(f"{name} must be a number", field, cure)
+            self.refuse(f"{name} must be a finite number", field, cure)
+        return number
 
     def numbers(self, fields: list[str], names: str) -> list[float]:
         """Return the numbers of some fields, which have names in one text."""
@@ -79,6 +81,14 @@ class Block(NamedTuple):
     keyword: str  # in capitals, without the asterisk
     head: Card
     cards: list[Card]
+
+
+def _parsed(kind: Callable[[str], Value], field: str) -> Value | None:
+    """Return the number in a field, 0 if it is blank; None if it is none, as Python's 1_1."""
+    try:
+        return None if "_" in field else kind(field or "0")
+    except ValueError:
+        return None
 
 
 def blocks(path: Path) -> list[Block]:
