@@ -196,7 +196,9 @@ class SphFluidParams:
             if self.boundary.tank
         ]
         reach = 2.0 * self.smoothing_length  # the radius of the kernel
-        return Filling(self.spacing, reach, self.boundary.wall_offset, tuple(dry))
+        offset, tank = self.boundary.wall_offset, self.boundary.tank
+        around = self.boundary.around(reach + offset * self.spacing)
+        return Filling(self.spacing, reach, offset, tuple(dry), tank, around)
 
     @property
     def boxes(self) -> tuple[Bounds, ...]:

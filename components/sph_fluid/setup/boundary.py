@@ -87,6 +87,18 @@ class Boundary:
         sides = ("y-", "y+") if dimensions == 2 else ()
         return tuple(f for f in FACES if f not in (*self.open_faces, *self.symmetry, *sides))
 
+    def around(self, thickness: float) -> Bounds | None:
+        """Lowest and highest corner of the tank and of walls so thick [m] at its closed faces."""
+        if self.tank is None:
+            return None
+        lower, upper = (
+            tuple(thickness if f"{axis}{side}" in self.closed_faces(3) else 0.0 for axis in "xyz")
+            for side in "-+"
+        )
+        (x, y, z), (u, v, w) = self.tank
+        lowest = (x - lower[0], y - lower[1], z - lower[2])
+        return lowest, (u + upper[0], v + upper[1], w + upper[2])
+
     def why_no_films(self, dimensions: int) -> str:
         """Why there can be no films in narrow gaps; "" if there can."""
         if self.method != "mdbc":

@@ -2,6 +2,7 @@
 
 from typing import Literal, NamedTuple
 
+from quintet.components.shared.geometry.bounds import Bounds
 from quintet.components.shared.geometry.shape_keys import MeshKeys
 from quintet.interfaces.params import Number, parameters
 
@@ -16,6 +17,8 @@ class Filling(NamedTuple):
     reach: float  # m, to which depth the fluid feels walls
     offset: float  # spacings from the surface to the first layer
     dry: tuple[tuple[int, float], ...] = ()  # axis and place [m] of each of the tank's walls
+    tank: Bounds | None = None  # m
+    around: Bounds | None = None  # m, the tank with its wall particles
 
 
 @parameters

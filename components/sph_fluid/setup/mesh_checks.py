@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
+from quintet.components.shared.geometry.bounds import Bounds
 from quintet.components.shared.geometry.lattice import fill_box
 from quintet.components.sph_fluid.setup.boundary import Boundary
 from quintet.components.sph_fluid.setup.boundary_meshes import BoundaryMesh, Filling
@@ -28,7 +29,7 @@ def check_meshes(
     fluid: Iterable[Array],
     gauges: Sequence[Vector],
 ) -> None:
-    """Surfaces are sound and thick enough, have no fluid behind them, and do not overlap.
+    """Surfaces are sound and thick enough, have no fluid behind them, and overlap nothing.
 
     Parameters
     ----------
@@ -54,6 +55,7 @@ def check_meshes(
         for k, places in enumerate(regions):
             _check_fluid(name, f"fluid[{k}]", behind, places)
         _check_gauges(name, behind, gauges)
+        _check_obstacles(name, points, boundary.solids, filling.spacing)
         for other, earlier in filled:
             _check_apart(name, points, other, earlier, filling.spacing)
         filled.append((name, points))
@@ -122,6 +124,18 @@ def _check_gauges(name: str, behind: Surface, gauges: Sequence[Vector]) -> None:
             f"gauges.pressure_gauges[{wrong[0]}] must not be behind {name}; found "
             f"{tuple(gauges[wrong[0]])} m. Move the gauge into the fluid."
         )
+
+
+def _check_obstacles(name: str, points: Array, boxes: Sequence[Bounds], spacing: float) -> None:
+    little = 1e-6 * spacing
+    for number, (low, high) in enumerate(boxes):
+        inside = (points > np.array(low) + little) & (points < np.array(high) - little)
+        if count := int(inside.all(axis=1).sum()):
+            raise ValueError(
+                f"{name} must not overlap boundary.obstacles[{number}]; {count} of its "
+                f"{len(points)} wall particles stand in it. Move one of the two, or unite both in "
+                "one file."
+            )
 
 
 def _check_apart(name: str, points: Array, other: str, earlier: Array, spacing: float) -> None:

@@ -7,6 +7,7 @@ import math
 from functools import lru_cache, partial
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from quintet.components.shared.geometry.surface_samples_closed import (
@@ -29,7 +30,10 @@ def surface(mesh: BoundaryMesh, filling: Filling) -> Surface:
 
 @lru_cache(maxsize=16)
 def mesh_points(mesh: BoundaryMesh, filling: Filling) -> tuple[Array, Array]:
-    """Particles (n, 3) m behind a surface, x fastest, and their images (n, 3) m in it."""
+    """Particles (n, 3) m behind a surface, x fastest, and their images (n, 3) m in it.
+
+    There are none in the tank's walls, which have their own.
+    """
     behind, spacing = surface(mesh, filling), filling.spacing
     corner = behind.whole.corner
     low, high = corner.min(axis=(0, 1)), corner.max(axis=(0, 1))
@@ -46,8 +50,20 @@ def mesh_points(mesh: BoundaryMesh, filling: Filling) -> tuple[Array, Array]:
     (points, _, _, images), _ = fill_closed(body, spacing, filling.reach - less, less)
     if not mesh.is_solid:
         points, images = _with_gaps_filled(points, images, behind, filling)
+    outside = ~_in_walls(points, filling)
+    points, images = points[outside], images[outside]
     order = np.lexsort(np.round(points / (1e-6 * spacing)).T)
     return points[order], images[order]
+
+
+def _in_walls(points: Array, filling: Filling) -> NDArray[np.bool_]:
+    """Whether points (n, 3) m lie in the walls of the tank."""
+    if filling.tank is None or filling.around is None:
+        return np.zeros(len(points), bool)
+    (low, high), (lowest, highest) = np.array(filling.tank), np.array(filling.around)
+    beyond = (points < low) | (points > high)
+    within = (points > lowest) & (points < highest)
+    return np.asarray(beyond.any(axis=1) & within.all(axis=1))
 
 
 def _with_gaps_filled(

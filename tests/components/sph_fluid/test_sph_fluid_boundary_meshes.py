@@ -12,6 +12,7 @@ from quintet.components.sph_fluid.boundary.obstacles import (
     obstacle_mirrors,
     obstacle_points,
 )
+from quintet.components.sph_fluid.boundary.walls import wall_points
 from quintet.components.sph_fluid.build import state
 from quintet.components.sph_fluid.component import SphFluid
 from quintet.components.sph_fluid.plan import particles
@@ -254,6 +255,30 @@ def test_meshes_that_overlap_are_refused(tmp_path):
     first, second = block(tmp_path), block(tmp_path, (0.8, 0.4, 0.2), (1.2, 0.8, 0.6), "b.obj")
     with pytest.raises(ValueError, match=r"meshes\[1\] must not overlap boundary.meshes\[0\]; "):
         dam({"file": first}, {"file": second})
+
+
+def test_a_mesh_in_an_obstacle_is_refused(tmp_path):
+    given = {"boundary.obstacles": [((0.9, 0.2, 0.0), (1.3, 0.6, 0.4))]}
+    with pytest.raises(ValueError, match=r"not overlap boundary.obstacles\[0\]; 128 of its 492 "):
+        dam({"file": block(tmp_path)}, **given)
+    beside = block(tmp_path, LOW, (0.9, 0.6, 0.4), "beside.obj")
+    dam({"file": beside}, **given)  # it may touch one
+
+
+@pytest.mark.parametrize("method", ["mdbc", "dbc"])
+def test_a_mesh_has_no_particles_in_a_closed_wall_of_the_tank(tmp_path, method):
+    given = {"boundary.method": method}
+    whole, _ = from_meshes(dam({"file": block(tmp_path)}, **given))
+    sunk = block(tmp_path, (*LOW[:2], -0.2), name="sunk.obj")
+    params = dam({"file": sunk}, **given)
+    points, _ = from_meshes(params)
+    apart, _ = cKDTree(wall_points(params)).query(points)
+    assert apart.min() > 0.99 * SPACING
+    distance, _ = matched(points[points[:, 2] > 0.0], whole)
+    assert distance < 1e-7
+    given["boundary.open_faces"] = ["z-", "z+"]
+    points, _ = from_meshes(dam({"file": sunk}, **given))
+    assert points[:, 2].min() < -0.1
 
 
 OPTIONS = {
