@@ -183,6 +183,11 @@ class SphFluidParams:
         # Left out of scenes without them, and of those without other shapes.
         from quintet.components.sph_fluid.setup.mesh_checks import check_meshes, region_points
 
+        if self.staggered:
+            raise ValueError(
+                "staggered is not available with boundary.meshes, for rows move towards the "
+                "surfaces; found both. Remove one of them."
+            )
         places = region_points(self.fluid, self.spacing)
         gauges = self.gauges.pressure_gauges
         check_meshes(self.boundary, self.mesh_filling, self.dimensions, places, gauges)

@@ -285,6 +285,7 @@ OPTIONS = {
     "potential": ({"boundary.method": "potential"}, "found boundary.method potential"),
     "symmetry": ({"boundary.symmetry": ["y-"]}, r"found boundary.symmetry \['y-'\]"),
     "films": ({"boundary.lubrication_films": True}, "found lubrication_films"),
+    "staggered": ({"staggered": True}, "staggered is not available with boundary.meshes"),
     "plane": ({"dimensions": 2}, "found dimensions 2"),
     "gauge": (
         {"gauges.pressure_gauges": [[0.8, 0.4, 0.2]]},
