@@ -45,22 +45,24 @@ def _own_materials(described: Any, folder: Path) -> tuple[Mapping[str, Table], l
     where = KEY
     if isinstance(described, str):
         where = described
-        if not _is_file(folder / described):
+        if not _is_file_below(folder, described):
             return {}, [
                 f"{KEY}: file {shown(described)} must lie beside the scene; in its folder there is "
                 "none. Put it there, or correct its name."
             ]
         try:
-            described = read_file(folder / described)
+            described = read_file(folder / described, "a file of materials")
         except SceneError as error:
             return {}, error.mistakes
     return described, wrong_materials(described, where)
 
 
-def _is_file(path: Path) -> bool:
+def _is_file_below(folder: Path, name: str) -> bool:
+    """Whether a name is that of a file in a folder or below it."""
     try:
-        return path.is_file()
-    except OSError:  # no file can have such a name
+        path = (folder / name).resolve()
+        return path.is_relative_to(folder.resolve()) and path.is_file()
+    except (OSError, ValueError):  # no file can have such a name
         return False
 
 

@@ -20,21 +20,21 @@ DEEP = re.compile(rf"""(?<![\w"'-]){PART}(?:\.[ \t]*+{PART}){{{DEEPEST},}}""")
 LONG = re.compile(rf"""^[ \t]*+\[*+[\w"'.-]{{{LONGEST_KEY * 8}}}""", re.MULTILINE)
 
 
-def read_file(path: Path) -> dict[str, Any]:
-    """Read a TOML file as it stands."""
+def read_file(path: Path, subject: str = "a scene") -> dict[str, Any]:
+    """Read a TOML file as it stands; messages have the subject of the file."""
     try:
         size = path.stat().st_size
         if size > LARGEST_FILE:
             raise SceneError(
-                f"{path.name}: a scene must have at most {LARGEST_FILE} bytes; found {size}. Put "
+                f"{path.name}: {subject} must have at most {LARGEST_FILE} bytes; found {size}. Put "
                 "data into a file beside it."
             )
         return parsed(path.read_bytes().decode())
     except (OSError, ValueError) as error:
-        raise SceneError(f"{path.name}: a scene must be valid TOML: {error}.") from error
+        raise SceneError(f"{path.name}: {subject} must be valid TOML: {error}.") from error
     except RecursionError as error:
         raise SceneError(
-            f"{path.name}: a scene must be valid TOML, its lists and tables at most {DEEPEST} "
+            f"{path.name}: {subject} must be valid TOML, its lists and tables at most {DEEPEST} "
             "deep; found more. Flatten them."
         ) from error
 

@@ -96,6 +96,21 @@ def test_mistakes_are_named_with_their_place(scene, setting):
     assert WRONG[setting] in str(refused.value)
 
 
+def test_a_file_of_materials_lies_below_the_folder_of_the_scene(scene, tmp_path):
+    (tmp_path / "below").mkdir()
+    scene = scene.rename(tmp_path / "below/rebound.toml")
+    (tmp_path / "out.toml").write_text("")
+    for name in ("../out.toml", str(tmp_path / "out.toml")):
+        with pytest.raises(SceneError, match=r"out.toml' must lie beside the scene; in its fold"):
+            load(str(scene), settings=[f'materials="{name}"'])
+
+
+def test_a_broken_file_of_materials_is_named(scene):
+    (scene.parent / "mine.toml").write_text("[nylon\n")
+    with pytest.raises(SceneError, match=r"mine.toml: a file of materials must be valid TOML: "):
+        load(str(scene), settings=['materials="mine.toml"'])
+
+
 def test_a_run_of_a_scene_with_names_leaves_their_constants(scene, tmp_path):
     with pytest.raises(SystemExit) as ended:
         main(["run", str(scene), "--out", str(tmp_path / "run")])
