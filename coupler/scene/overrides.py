@@ -5,12 +5,15 @@ import re
 import sys
 from collections import Counter
 from collections.abc import Iterable, Mapping
+from pathlib import Path
 from typing import Any
 
 import tomli_w
 
+from quintet.coupler.scene.foreign_code import trusted_params
 from quintet.coupler.scene.toml import LONGEST_KEY, value_of
 from quintet.interfaces.errors import SceneError
+from quintet.interfaces.materials.filling import places
 from quintet.interfaces.params import DEEPEST, shown, unknown
 
 
@@ -56,7 +59,7 @@ def put(table: dict[str, Any], path: str, value: Any) -> list[str]:
                 return [f"{place}: must be a number below {len(at)}; found {head!r}. Correct it."]
             at = at[int(head)]
         elif isinstance(at, dict) and (head in at or _may_be_made(heads[: number + 1])):
-            at[head] = _material(at.get(head, {}), heads[: number + 1])
+            at[head] = _material(table, at.get(head, {}), heads[: number + 1])
             at = at[head]
         else:
             return [unknown(place, head, at if isinstance(at, dict) else ())]
@@ -69,10 +72,23 @@ def put(table: dict[str, Any], path: str, value: Any) -> list[str]:
     return []
 
 
-def _material(value: Any, heads: list[str]) -> Any:
+def _material(table: dict[str, Any], value: Any, heads: list[str]) -> Any:
     """Write the name of a component's material as a table, so that its constants can be set."""
+    if not isinstance(value, str):
+        return value
     names_one = heads[-1] == "material" or heads[-2:-1] == ["materials"]
-    return {"material": value} if names_one and isinstance(value, str) else value
+    return {"material": value} if names_one or _takes_material(table, heads) else value
+
+
+def _takes_material(table: dict[str, Any], heads: list[str]) -> bool:
+    """Whether a table of a component of an installed kind may name a material."""
+    components = table.get("components")
+    if heads[0] != "components" or not isinstance(components, dict):
+        return False
+    component = components.get(heads[1]) if len(heads) > 1 else None
+    kind = component.get("kind") if isinstance(component, dict) else None
+    params = trusted_params(kind, Path(), imports=False)
+    return params is not None and ".".join(heads[2:]) in dict(places(params))
 
 
 def is_index(text: str, among: list[Any]) -> bool:

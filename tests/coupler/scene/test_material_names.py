@@ -8,6 +8,7 @@ import pytest
 
 from quintet.coupler.cli import main
 from quintet.coupler.reference.schema import scene_schema
+from quintet.coupler.scene.overrides import put_set
 from quintet.coupler.scene.read import load, load_variants
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.materials.library import library
@@ -76,6 +77,12 @@ def test_materials_of_the_scene_stand_in_a_table_or_in_a_file_beside_it(scene):
     scene.write_text(f'materials = "mine.toml"\n{SCENE}')
     (scene.parent / "mine.toml").write_text(f"[nylon]\n{nylon}")
     assert materials(scene, setting)["bead"] == in_table
+
+
+def test_a_key_of_a_named_gas_can_be_set():
+    table = {"components": {"air": {"kind": "meshless_gas", "gas": "argon"}}}
+    assert put_set(table, "components.air.gas.gamma=1.4") == []
+    assert table["components"]["air"]["gas"] == {"material": "argon", "gamma": 1.4}
 
 
 WRONG = {
