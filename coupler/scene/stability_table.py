@@ -82,7 +82,7 @@ class Against:
         Its path.
     values : of the parameter
         For each of which the limit is found.
-    along : of its paths
+    along
         Other paths that change with it: for each a list of values, one for each of `values`.
     """
 

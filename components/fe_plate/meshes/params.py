@@ -57,7 +57,7 @@ class MeshedPart(BoxKeys, CylinderKeys, MeshKeys):
     coincident_nodes
         Nodes of different elements of a mesh at the same place: "refuse" them, "join" them to one,
         or "keep" them apart, as at a crack.
-    parts
+    parts : 1
         Of a mesh: the parts that are read, by their numbers or titles in an LS-DYNA file, or by
         names of sets of elements; all if none are given.
     """
