@@ -212,7 +212,7 @@ class DemBodies(Component):
         lists = begin.Lists(has_rolling, self.params.contact_forces)
         parts = (self.bodies, self.solids, self.model)
         fitted, changed = begin.fitted(state, *parts, lists)
-        self.load(fitted)
+        self.load({**fitted, **(self.faces.penalty.beginning(state) if self.faces else {})})
         self.accumulated = Accumulated()
         if changed:
             self.begun = False

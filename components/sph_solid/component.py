@@ -271,7 +271,8 @@ class SphSolid(Component):
     def begin_from(self, state: Fields) -> None:
         """Begin from the state of another run of the same particles; judge from here on."""
         settings = self.params.spacing, method(self.params).total_lagrangian
-        self.load(restarted(state, self.state, self.all_ranks, *settings))
+        contact = self.faces.penalty.beginning(state) if self.faces else {}
+        self.load({**restarted(state, self.state, self.all_ranks, *settings), **contact})
 
     def totals(self) -> Totals:
         """Mass, momentum and energies, without the motion of particles that a mesh carries."""

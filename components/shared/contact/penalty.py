@@ -1,7 +1,7 @@
 """Contact of a component's particles with the faces of its partners' meshes, by penalty forces."""
 
 import math
-from dataclasses import astuple, dataclass
+from dataclasses import astuple, dataclass, replace
 
 import numpy as np
 
@@ -192,6 +192,19 @@ class PenaltyContact:
         self.kicked = np.array(state[f"{HEAD}kicked"])
         self.numbers = Numbers(*state[f"{HEAD}numbers"].tolist())
         self.near = None
+
+    def beginning(self, state: Fields) -> Fields:
+        """Return what `load` needs of the state of another run: its history, where it suits.
+
+        A state without contact, with another mesh or other particles starts without history. What
+        is summed over the run begins at 0.
+        """
+        start = self.save()
+        is_same = all(key in state and state[key].shape == start[key].shape for key in start)
+        numbers = Numbers(*state[f"{HEAD}numbers"].tolist()) if is_same else self.numbers
+        numbers = replace(numbers, dissipated=0.0, deepest=0.0, work=0.0, opened=0.0)
+        history = {key: state[key] for key in start} if is_same else start
+        return {**history, f"{HEAD}numbers": np.array(astuple(numbers))}
 
     def warnings(self) -> dict[str, str]:
         """Warn of particles that passed through faces, or nearly did, and of eroded faces."""

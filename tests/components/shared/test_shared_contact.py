@@ -282,6 +282,36 @@ def test_a_particle_that_has_passed_through_a_face_is_warned_of():
     assert "one went 1.2 m deep, and beyond 1 m" in contact.warnings()["contact"]
 
 
+def test_a_run_that_begins_from_another_keeps_history_and_counts_from_0():
+    contact, points = _contact(1, friction=0.1), _points([(1.0, 1.0, -0.3)], np.ones((1, 3)))
+    for _ in range(2):
+        _take(contact)
+        contact.kick(points, 1e-1)
+    saved, other = contact.save(), _contact(1)
+    assert contact.warnings() and contact.numbers.dissipated > 0.0
+    other.load(other.beginning(saved))
+    numbers = other.numbers
+    assert not other.warnings() and numbers.dissipated == numbers.work == numbers.deepest == 0.0
+    np.testing.assert_array_equal(other.slip, contact.slip)
+    assert numbers.energy > 0.0 and other.stable_step(1.0) == contact.stable_step(1.0)
+
+
+def test_a_state_without_this_contact_begins_without_history():
+    contact, points = _contact(1, friction=0.5), _points([(1.0, 1.0, 0.3)], np.ones((1, 3)))
+    _take(contact)
+    contact.kick(points, 1e-2)
+    coarse = _contact(1, NODES[:4], FACES[:1])
+    for other, state in (
+        (_contact(1), {}),
+        (coarse, contact.save()),
+        (_contact(2), contact.save()),
+    ):
+        start = other.save()
+        other.load(other.beginning(state))
+        for key, array in other.save().items():
+            np.testing.assert_array_equal(array, start[key])
+
+
 def test_what_is_saved_comes_back():
     contact, points = _contact(1, friction=0.5), _points([(1.0, 1.0, 0.3)], np.ones((1, 3)))
     _take(contact)
