@@ -9,6 +9,8 @@ from quintet.components.shared.contact.penalty import PenaltyContact
 from quintet.interfaces.component import Array, Fields, Resources
 from quintet.interfaces.errors import SceneError
 
+NONE_FIXED = np.zeros(0, np.int64)  # spheres that touch faces are free
+
 
 class PartnerFaces:
     """Faces that spheres touch, as half cubes of 2 R would: area R², layer 2 R."""
@@ -33,6 +35,7 @@ class PartnerFaces:
         points = Points(
             np.ascontiguousarray(moving[:, :3]), velocity, np.arange(self.count), self.mass,
             self.radius**2, self.modulus, self.radius, spin, self.inverse_moment,
+            NONE_FIXED,
         )  # fmt: skip
         self.penalty.kick(points, dt)
         state.motion[rows, VELOCITY : VELOCITY + 3] = velocity

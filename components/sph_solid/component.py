@@ -122,7 +122,6 @@ class SphSolid(Component):
         add_work(state, dt)
         if self.faces:
             self.faces.kick(state, dt)
-            state.velocity[self.fixed_rows] *= self.moves
         displaced = self.team.run(
             kick_and_drift_half, state.particles, dt, state.position, state.velocity,
             state.acceleration, state.failed, state.volume, state.reference, rows.place,

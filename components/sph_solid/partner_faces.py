@@ -11,6 +11,8 @@ from quintet.interfaces.component import Fields
 
 NO_SPIN = np.zeros((0, 3)), np.zeros(0)  # rad/s, and 1/(kg m2)
 
+NONE_FIXED = np.zeros(0, np.int64)
+
 
 class PartnerFaces:
     """Faces that particles touch at half a spacing."""
@@ -27,11 +29,12 @@ class PartnerFaces:
         self.mass = materials.mass(state)
         self.area = state.volume / (2.0 * self.penalty.radius)
         self.moduli = self.modulus[state.material]
+        self.fixed = state.fixed if state.fixed.any() else NONE_FIXED
 
     def kick(self, state: State, dt: float) -> None:
         """Change velocities by contact in a step of dt [s], with its forces at the begin."""
         points = Points(
             state.position, state.velocity, state.identity, self.mass, self.area, self.moduli,
-            self.radius, *NO_SPIN,
+            self.radius, *NO_SPIN, self.fixed,
         )  # fmt: skip
         self.penalty.kick(points, dt)

@@ -42,6 +42,7 @@ class Points(NamedTuple):
     radius: Array  # (n,) m, half a spacing
     spin: Array  # (n, 3) rad/s, changed by friction; (0, 3) of points that do not turn
     inverse_moment: Array  # (n,) 1/(kg m2), that about any axis; (0,) likewise
+    fixed: Whole  # (n,) 1 2 4 added up: does not move along x, y, z; (0,) where all are free
 
 
 class Near(NamedTuple):
@@ -294,12 +295,14 @@ def touch(
         deepest = max(deepest, -gap)
         for d in range(3):
             force = push * n[d] - stiff * slip[d]
+            for c in range(4):
+                loads.force[surface.corner[face, c], d] -= weight[c] * force
+            if points.fixed.shape[0] and (points.fixed[i] >> d) & 1:
+                continue
             kicked = dt * force / points.mass[i]
             half_kick += 0.5 * dt * force * (points.velocity[i, d] + 0.25 * kicked)
             points.velocity[i, d] += kicked
             half[d] = 0.5 * kicked
-            for c in range(4):
-                loads.force[surface.corner[face, c], d] -= weight[c] * force
         if points.spin.shape[0]:
             twist = dt * stiff * lever * points.inverse_moment[i]
             points.spin[i, 0] += twist * (n[1] * slip[2] - n[2] * slip[1])

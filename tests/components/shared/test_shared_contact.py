@@ -55,6 +55,7 @@ def _points(place, velocity=None, mass=1.0):
         radius,
         np.zeros((0, 3)),
         np.zeros(0),
+        np.zeros(0, np.int64),
     )
 
 
@@ -310,6 +311,18 @@ def test_a_state_without_this_contact_begins_without_history():
         other.load(other.beginning(state))
         for key, array in other.save().items():
             np.testing.assert_array_equal(array, start[key])
+
+
+def test_a_particle_at_rest_under_contact_has_no_kinetic_energy():
+    contact, points = _contact(1, friction=0.5), _points([(1.0, 1.0, 0.3)])
+    for fixed, moves in ((7, [0, 0, 0]), (4, [1, 0, 0])):
+        points.velocity[:] = 0.0 if fixed == 7 else (1.0, 0.0, 0.0)
+        _take(contact)
+        contact.kick(points._replace(fixed=np.array([fixed])), 1e-2)
+        assert contact.reaction[:, 2].sum() < 0.0
+        assert (contact.kicked[0] == 0.0).tolist() == (np.array(moves) == 0).tolist()
+        assert points.velocity[0, 2] == 0.0
+        assert (contact.numbers.half_kick == 0.0) == (fixed == 7)
 
 
 def test_what_is_saved_comes_back():
