@@ -132,8 +132,9 @@ class SphSolid(Component):
         spread = self.lists.spread(low, high)
         if self.lists.may_miss(state, spread, rows.place[: state.particles], dt):
             self._search(dt)
-        self._write_gradients()
         rows = self.rows
+        self.lists.images.write_all(state.particles, rows.place, rows.motion)
+        self.sums.write_gradients(rows, self.law)
         self.materials.advance(rows, dt)
         self.materials.write_stresses(state, rows, self.law)
         self.team.run(
@@ -179,7 +180,8 @@ class SphSolid(Component):
         self.all_ranks.sort(state, state.position)
         self._list()
         self.rows.fill(state, state.position, state.failed)
-        self._write_gradients()
+        self.lists.images.write_all(state.particles, self.rows.place, self.rows.motion)
+        self.sums.write_gradients(self.rows, self.law)
         self.materials.write_stresses(state, self.rows, self.law)
         self.rows.motion[: state.particles, 3] = state.sound
         self._write_accelerations()
@@ -209,12 +211,6 @@ class SphSolid(Component):
         self.moves = ((state.fixed[self.fixed_rows, None] >> np.arange(3)) & 1) == 0
         if self.faces:
             self.faces.make(state, self.materials)
-
-    def _write_gradients(self) -> None:
-        """Write gradients of velocity, from places and motion in the rows."""
-        rows, count = self.rows, self.state.particles
-        self.lists.images.write_all(count, rows.place, rows.motion)
-        self.sums.write_gradients(rows, self.law)
 
     def _write_accelerations(self) -> None:
         """Write accelerations, forces on glued particles and the next stable step."""

@@ -124,6 +124,6 @@ def test_forces_of_contacts_are_refused_beside_faces_that_they_would_lack():
     ball = sphere((0.0, 0.0, 0.1))
     assert build([ball], contact_with_faces=True) and build([ball], contact_forces=True)
     assert mistakes([ball], contact_with_faces=True, contact_forces=True) == [
-        "bodies: contact_forces must be false with contact_with_faces, as port contact has no forces "
-        "of faces; found both true. Leave out contact_forces."
+        "bodies: contact_forces must be false with contact_with_faces, as port contact has no "
+        "forces of faces; found both true. Leave out contact_forces."
     ]
