@@ -149,6 +149,18 @@ def test_an_open_tank_has_no_particles_above_its_rim(tmp_path):
     assert any("its rims have 48 edges, and a hole in it would be one" in n for n in params.notes)
 
 
+def test_the_volume_of_layers_is_measured_in_slabs(tmp_path, monkeypatch):
+    sizes, depths = [], Surface.depths
+
+    def counted(surface, points):
+        sizes.append(len(points))
+        return depths(surface, points)
+
+    monkeypatch.setattr(Surface, "depths", counted)
+    from_meshes(filled(tank(tmp_path, False), "open"))
+    assert 24**3 <= max(sizes) < 3 * 24**3  # places in the box around, a spacing apart
+
+
 @pytest.mark.parametrize("shape", ["ball", "ring", "brick"])
 def test_depths_are_those_of_the_nearest_place(tmp_path, shape):
     made = {
