@@ -19,8 +19,7 @@ SEE = "`quintet materials` lists all."
 def _left(name: str) -> str:
     """Refuse a name that was not replaced by constants."""
     raise ValueError(
-        f"material {name} is a name for scenes, which replace it by constants; found it where "
-        "constants are needed. Give them in its place."
+        f"material {name}: material names work only in scene files. Give the constants instead."
     )
 
 

@@ -238,7 +238,7 @@ def test_of_keys_that_exclude_each_other_the_given_one_stays():
 
 def test_a_name_that_nobody_filled_in_is_refused():
     _, mistakes = read(Bath, {"material": "olive", "density": 1.0}, "bath")
-    assert "material olive is a name for scenes" in mistakes[0]
+    assert "material olive: material names work only in scene files" in mistakes[0]
 
 
 def test_own_materials_have_known_constants():

@@ -80,11 +80,11 @@ def _check_options(boundary: Boundary, dimensions: int) -> None:
     elif boundary.symmetry:
         wrong = f"boundary.symmetry {list(boundary.symmetry)}. Leave one of the two out"
     elif boundary.lubrication_films is True:
-        wrong = "lubrication_films, which are not known there. Leave one of the two out"
+        raise ValueError("lubrication_films is not available with meshes. Remove one of them.")
     if wrong:
         raise ValueError(
-            "boundary.meshes are walls in three dimensions, without planes of symmetry, films or "
-            f"the contact potential; found {wrong}."
+            "boundary.meshes are walls in three dimensions, without planes of symmetry or the "
+            f"contact potential; found {wrong}."
         )
 
 

@@ -132,7 +132,7 @@ class Surface:
         """Depths (n,) m of places (n, 3) m, negative before the surface, and normals (n, 3).
 
         A normal points to the nearest place of the surface. Where several faces are equally near,
-        a way along it by a depth goes to all of them: it is longer than 1.
+        depth times the vector reaches all of them, so it may be longer than 1.
         """
         below, normal = np.empty(len(points)), np.zeros_like(points)
         distance, _ = self.tree.query(points, distance_upper_bound=self.reach + self.spacing)
