@@ -90,7 +90,12 @@ class OutputWriter:
         self._progress: ProgressReport | None = None
         self._files: dict[str, VtkHdf] = {}
         self._shows = bool(scene.file.output.interval or scene.file.output.pictures)
-        self._asked: set[str] = set()  # components that were asked for their walls
+        # Components whose walls are written; those of a run that goes on stay as they are.
+        self._asked = {
+            name
+            for name in scene.components
+            if first is not None and (folder / walls_file(name)).is_file()
+        }
         self._began = 0.0  # s, simulated
 
     def plan(self, windows: Windows) -> None:

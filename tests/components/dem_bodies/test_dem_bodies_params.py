@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -95,16 +96,22 @@ def test_copies_stand_on_a_lattice_and_scatter_the_same_way_each_time():
     assert 0.005 < np.abs(moved).max() <= 0.01
 
 
+def ports(given):
+    """Ports taken and given, without what they say of ports that the scene does not ask for."""
+    sides = MANIFEST.ports(given)
+    return tuple(tuple(replace(port, lacks=()) for port in side) for side in sides)
+
+
 def test_contact_forces_are_a_port_only_if_asked_for():
     given = params([box([0.0, 0.0, 0.0])], contact_forces=True)
-    assert MANIFEST.ports(given) == ((LOAD,), (MOTION, CONTACT))
+    assert ports(given) == ((LOAD,), (MOTION, CONTACT))
 
 
 def test_manifest_needs_no_solver():
     code = "import sys, quintet.components.dem_bodies; assert 'numba' not in sys.modules"
     subprocess.run([sys.executable, "-c", code], check=True)
     given = params([box([0.0, 0.0, 0.0]), box([0.0, 0.0, 0.2])])
-    assert MANIFEST.ports(given) == ((LOAD,), (MOTION,))
+    assert ports(given) == ((LOAD,), (MOTION,))
     plan = MANIFEST.plan(given)
     assert plan.items == 2 and 1e-6 < plan.dt < 1e-3
 
