@@ -58,7 +58,7 @@ FAULTS = [
     Fault("huge", "said", f"{SHAPE} (250000000, 3)", outputs=True),
     Fault("out of memory", "said", "MemoryError: "),
     Fault("disk full", "said", "OSError: [Errno 28] No space left on device"),
-    Fault("link cut", "dead", "pong is gone", ("zenoh",)),
+    Fault("link cut", "dead", "pong is gone | ended by itself with status 3", ("zenoh",)),
 ]  # fmt: skip
 BY_NAME = {fault.name: fault for fault in FAULTS}
 
