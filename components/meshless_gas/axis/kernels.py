@@ -5,10 +5,10 @@ from typing import Any
 import numpy as np
 from numba import njit
 
-from quintet.components.shared.numba_options import FAST
+from quintet.components.shared.numba_options import EXACT, FAST
 
 
-@njit(**FAST)
+@njit(**EXACT)
 def add_axis(
     first: int, last: int, rows: Any, positions: Any, primitive: Any, gamma: float, residual: Any
 ) -> None:
@@ -26,7 +26,7 @@ def add_axis(
         residual[i, 4] -= rate * (gamma / (gamma - 1.0) * p / r + 0.5 * (u * u + w * w))
 
 
-@njit(**FAST)
+@njit(**EXACT)
 def write_swelling(first: int, last: int, positions: Any, primitive: Any, transported: Any,
                    swelling: Any) -> None:  # fmt: skip
     """Write -2/3 μ w/r (n,) Pa: what circles that grow add to the normal stresses."""

@@ -13,7 +13,7 @@ from quintet.components.shared.numba_options import EXACT, FAST
 STAGES = ((0.0, 1.0, 1.0 / 6.0), (0.75, 0.25, 1.0 / 6.0), (1.0 / 3.0, 2.0 / 3.0, 2.0 / 3.0))
 
 
-@njit(**FAST)
+@njit(**EXACT)
 def write_sound(first: int, last: int, primitive: Any, gamma: float, sound: Any) -> None:
     """Write the speed of sound (n,) m/s of nodes."""
     for i in range(first, last):

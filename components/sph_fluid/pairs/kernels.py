@@ -3,7 +3,7 @@
 import numpy as np
 from numba import njit
 
-from quintet.components.shared.numba_options import FAST
+from quintet.components.shared.numba_options import EXACT, FAST
 from quintet.components.shared.search.neighbours import Lists
 from quintet.components.shared.smoothing.smoothing import gradient, kernel
 from quintet.components.sph_fluid.kernels import BoundaryRows, Particles
@@ -20,7 +20,7 @@ from quintet.components.sph_fluid.state import Array, Whole
 NO_FLUID = 1e-2  # Σ V W below which there is no fluid around a mirror point
 
 
-@njit(**FAST)
+@njit(**EXACT)
 def write_damped_pressure(
     first: int, last: int, strength: float, minus_rho_div_u: Array, position: Array,
     velocity: Array, constants: Constants,
@@ -139,7 +139,7 @@ def sample_forces(
             force[number[s], d] = constants.mass * constants.mass * on_sample[d]
 
 
-@njit(**FAST)
+@njit(**EXACT)
 def move_by(first: int, last: int, time: float, velocity: Array, position: Array) -> None:
     """Move rows [first, last) with velocities (fluid, 3) m/s for a time [s]."""
     for i in range(first, last):

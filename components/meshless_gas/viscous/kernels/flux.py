@@ -10,12 +10,12 @@ import numpy as np
 from numba import njit
 
 from quintet.components.meshless_gas.laws.transport import sutherland
-from quintet.components.shared.numba_options import FAST, FAST_INNER
+from quintet.components.shared.numba_options import EXACT, FAST, FAST_INNER
 
 TWO_THIRDS = 2.0 / 3.0
 
 
-@njit(**FAST)
+@njit(**EXACT)
 def write_transport(first, last, primitive, law, transported):  # type: ignore[no-untyped-def]
     """Temperature [K] and viscosity [Pa s] of all nodes, (n, 2)."""
     for i in range(first, last):
@@ -40,7 +40,7 @@ def write_temperature_gradients(  # type: ignore[no-untyped-def]
         gradients[i, 0], gradients[i, 1], gradients[i, 2] = x, y, z
 
 
-@njit(**FAST)
+@njit(**EXACT)
 def write_ghost_slopes(begin, end, owner, turn, gradients):  # type: ignore[no-untyped-def]
     """Turn gradients (n, 3) of a scalar to the ghosts of their nodes."""
     first = gradients.shape[0] - owner.shape[0]
