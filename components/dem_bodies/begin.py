@@ -1,4 +1,4 @@
-"""A start from the state of another run, whose planes, materials and locks may have been others."""
+"""A start from the state of another run, whose planes, materials and locks may differ."""
 
 from dataclasses import dataclass
 from typing import Any

@@ -219,9 +219,7 @@ class DemBodies(Component):
             try:
                 self._begin()
             except StepError as error:
-                raise SceneError(
-                    f"the state that it begins from cannot be gone on with: {error}"
-                ) from error
+                raise SceneError(f"the first contacts after begin_from failed: {error}") from error
 
     def warnings(self) -> dict[str, str]:
         """Warn of contacts that few steps resolved, and of deep overlaps."""

@@ -44,7 +44,7 @@ class Material:
     Parameters
     ----------
     material
-        Name of a material, whose constants stand for those that are not given.
+        Name of a material, which gives the constants that are not set here.
     youngs_modulus : Pa
         E.
     poissons_ratio : 1

@@ -13,7 +13,7 @@ NONE_FIXED = np.zeros(0, np.int64)  # spheres that touch faces are free
 
 
 class PartnerFaces:
-    """Faces that spheres touch, as half cubes of 2 R would: area R², layer 2 R."""
+    """Faces that spheres touch; each sphere has the contact area R² and the thickness 2 R."""
 
     def __init__(
         self, static: Fields, params: DemBodiesParams, model: Model, state: State, mass: Array

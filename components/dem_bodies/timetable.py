@@ -1,8 +1,8 @@
 """Planes that vanish and bodies that are released at a time of the run, as gates and supports do.
 
 A plane or lock is as it was until the first step that begins at its time or later; one of its steps
-is a fraction of a contact's duration. What the contacts with a plane held of elastic energy when it
-vanishes is lost, and counts as dissipated.
+is a fraction of a contact's duration. The elastic energy of contacts with a plane that vanishes is
+lost; it counts as dissipated.
 """
 
 import numpy as np

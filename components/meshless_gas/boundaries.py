@@ -20,7 +20,7 @@ class Gas:
     Parameters
     ----------
     material
-        Name of a material, whose constants stand for those that are not given.
+        Name of a material, which gives the constants that are not set here.
     gamma : 1
         Ratio of the specific heats.
     gas_constant : J/(kg K)

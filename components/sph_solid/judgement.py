@@ -43,11 +43,11 @@ NEEDED_BY_BONDS = ("identity", "position", "body", "failed", "temperature", "mat
 
 
 def note_energies(
-    state: State, kinetic: float, potential: float, internal: float, elsewhere: float = 0.0
+    state: State, kinetic: float, potential: float, internal: float, in_contact: float = 0.0
 ) -> None:
-    """Extend the ranges of energies [J] by those of the present time; their sum has one more."""
+    """Extend the ranges of energies [J], and of their sum with contact, by the present ones."""
     energies = np.array([kinetic, potential, internal])
-    total = float(energies.sum()) + elsewhere - state.work
+    total = float(energies.sum()) + in_contact - state.work
     if state.steps == 0:
         state.ranges[:] = energies[:, None]
         state.sums[:] = total

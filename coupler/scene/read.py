@@ -157,11 +157,7 @@ def _check(
     tables = tables if imports else trusted_tables(tables, path.parent)
     look_in(import_folders(path, tables))
     announce(kinds_of(tables), path.parent)
-    table, wrong_texts = with_materials(table, path.parent, imports)
-    if not wrong_texts:
-        table, wrong_texts = scene_in_si(table, path.parent, imports)
-    if wrong_texts:
-        raise SceneError([f"{path.name}: {mistake}" for mistake in wrong_texts[:MOST_TOLD]])
+    table = _with_constants(path, table, imports)
     keys = {key: value for key, value in table.items() if key not in TABLES}
     file, mistakes = read(SceneFile, keys, "scene")
     mistakes = [_also_tables(mistake) for mistake in mistakes]
@@ -209,6 +205,16 @@ def _check(
     scene = Scene(file, path, preset, components, links, coupling, expect, resolved, file.transport)
     scene.beginning = beginning
     return scene, variants
+
+
+def _with_constants(path: Path, table: dict[str, Any], imports: bool) -> dict[str, Any]:
+    """Write constants for the names of materials, and plain numbers for quantities with units."""
+    table, wrong_texts = with_materials(table, path.parent, imports)
+    if not wrong_texts:
+        table, wrong_texts = scene_in_si(table, path.parent, imports)
+    if wrong_texts:
+        raise SceneError([f"{path.name}: {mistake}" for mistake in wrong_texts[:MOST_TOLD]])
+    return table
 
 
 def _beginning(table: dict[str, Any], folder: Path, mistakes: list[str]) -> Beginning | None:

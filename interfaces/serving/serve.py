@@ -275,10 +275,11 @@ class Server:
         try:
             self.component.begin_from(parts["component"])
         except (LookupError, TypeError, ValueError) as error:
-            said = unlike(parts["component"], self.component.save()) or str(error)
+            difference = unlike(parts["component"], self.component.save()) or str(error)
             raise SceneError(
-                f"the state that it begins from must be one of a component like this; {said}. "
-                "Leave what it is made of as it was."
+                "the state that it begins from must be one of a component like this; "
+                f"{difference}. "
+                "Keep its bodies, meshes and resolution as in that run."
             ) from error
         self._stable = None
         if not message.header.get("goes_on"):

@@ -46,15 +46,15 @@ def test_examples_are_commands_with_known_options(name, line):
 
 def completed(line, tmp_path):
     """Words that a shell is given for a line."""
-    said = tmp_path / "words"
-    with said.open("wb") as file:
+    words_file = tmp_path / "words"
+    with words_file.open("wb") as file:
         # argcomplete answers on descriptor 8.
         command = f'"{sys.executable}" -m quintet.coupler.cli 8>&{file.fileno()} 9>/dev/null'
         environment = {**os.environ, **ASKED, "COMP_LINE": line, "COMP_POINT": str(len(line))}
         subprocess.run(
             ["bash", "-c", command], env=environment, pass_fds=[file.fileno()], check=True
         )
-    return said.read_text().split("\n")
+    return words_file.read_text().split("\n")
 
 
 def test_a_shell_completes_commands_scenes_and_keys(tmp_path):
@@ -103,7 +103,7 @@ def test_completion_is_not_imported_by_other_commands():
         "import sys; from quintet.coupler.cli import parser; parser().format_help(); "
         "print([name for name in sys.modules if 'argcomplete' in name or 'completion' in name])"
     )
-    said = subprocess.run(
+    words_file = subprocess.run(
         [sys.executable, "-c", program], capture_output=True, text=True, check=True
     )
-    assert said.stdout.strip() == "[]"
+    assert words_file.stdout.strip() == "[]"

@@ -47,7 +47,7 @@ def as_source(mesh: Any) -> Source:
 
 
 def of_parts(name: str, source: Source, parts: Sequence[int | str]) -> Source:
-    """Keep the cells of some named parts alone, solids and others; sets keep what is left.
+    """Keep only the cells of the named parts; sets keep those of their cells that are left.
 
     Parameters
     ----------

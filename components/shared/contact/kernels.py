@@ -1,4 +1,4 @@
-"""Which particles are near which faces, and the penalty forces of those that touch; compiled.
+"""Compiled loops: search for faces near particles, and penalty forces between those that touch.
 
 Faces are closed, as `geometry.face_kernels` has them.
 """
@@ -14,7 +14,7 @@ from quintet.components.shared.geometry.face_kernels import Array, Cells, Whole,
 from quintet.components.shared.numba_options import EXACT, INNER
 
 HALF_DEPTH = 0.5  # m along y, of edges in a plane
-ON = 1e-3  # of a distance: what lies so far beside a face is above it
+ON = 1e-3  # of a radius: a particle whose foot is so little beside a face counts as above it
 
 
 class Surface(NamedTuple):
@@ -31,7 +31,7 @@ class Surface(NamedTuple):
 
 
 class Points(NamedTuple):
-    """Particles at the begin of a step; each has a row, and a number for good."""
+    """Particles at the start of a step: arrays by row; `identity` stays while rows change."""
 
     place: Array  # (n, 3 or more) m
     velocity: Array  # (n, 3) m/s, changed by contact

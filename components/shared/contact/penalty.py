@@ -19,7 +19,7 @@ from quintet.interfaces.component import Array, Fields
 
 PORT, ACTIVE, FORCE = "contact_faces", "contact_activity.active", "contact_load.force"
 POSITION, VELOCITY = f"{PORT}.position", f"{PORT}.velocity"
-HEAD = "contact/"  # of what is saved
+HEAD = "contact/"  # prefix of the keys in saved states
 
 
 @dataclass(slots=True)
@@ -40,12 +40,12 @@ class Numbers:
 
     @property
     def brought(self) -> float:
-        """Energy [J] that the particles' own lacks, less what the faces did on them."""
+        """Energy [J] in contact and in half kicks, less the work of the faces on the particles."""
         return self.half_kick + self.energy + self.dissipated - self.work
 
 
 class PenaltyContact:
-    """Faces of partners, what is near them, and the forces of what touches.
+    """Penalty contact of the particles of a solver with the faces of its partners.
 
     Parameters
     ----------

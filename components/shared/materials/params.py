@@ -130,7 +130,7 @@ class Material:
     Parameters
     ----------
     material
-        Name of a material, whose constants stand for those that are not given.
+        Name of a material, which gives the constants that are not set here.
     density : kg/m3
         ρ₀, unstressed.
     youngs_modulus : Pa

@@ -16,31 +16,31 @@ KEEPS = {"longest_step": 1e-4}
 
 def settle(bodies, time, materials=None, **given):
     """Bodies after a time [s]."""
-    made = build(bodies, materials, **KEEPS, **given)
-    return advance(made, time)
+    solver = build(bodies, materials, **KEEPS, **given)
+    return advance(solver, time)
 
 
-def advance(made, time):
+def advance(solver, time):
     """Step through a time [s]."""
-    end = made.accumulated.time + time
-    while made.accumulated.time < end:
-        made.step(made.stable_dt())
-    return made
+    end = solver.accumulated.time + time
+    while solver.accumulated.time < end:
+        solver.step(solver.stable_dt())
+    return solver
 
 
 def begin(state, bodies, materials=None, **given):
     """Other bodies that begin from a saved state."""
-    made = DemBodies(params(bodies, materials, **KEEPS, **given))
-    made.begin_from(state)
-    return made
+    solver = DemBodies(params(bodies, materials, **KEEPS, **given))
+    solver.begin_from(state)
+    return solver
 
 
-def positions(made):
-    return made.give(frozenset({"motion.position"}))["motion.position"]
+def positions(solver):
+    return solver.give(frozenset({"motion.position"}))["motion.position"]
 
 
-def velocities(made):
-    return made.give(frozenset({"motion.velocity"}))["motion.velocity"]
+def velocities(solver):
+    return solver.give(frozenset({"motion.velocity"}))["motion.velocity"]
 
 
 def test_nothing_changed_goes_on_with_the_same_bits_and_a_clock_at_0():
@@ -64,7 +64,7 @@ def test_a_packing_settled_here_is_a_start_though_soft_spheres_overlap_their_pla
     assert depth > 1e-5  # more than a scene may start with
     again = begin(first.save(), PILE, materials, planes=[FLOOR, WALL])
     assert np.array_equal(positions(again), positions(first))
-    ends = [positions(advance(made, 0.01)) for made in (first, again)]
+    ends = [positions(advance(solver, 0.01)) for solver in (first, again)]
     assert np.array_equal(*ends)
 
 
@@ -77,11 +77,12 @@ def test_contacts_keep_their_history_where_planes_are_numbered_otherwise():
     first = settle(bodies, 0.2, materials, planes=[slope])
     again = begin(first.save(), bodies, materials, planes=[far, slope])
     held = [
-        made.lists.balls.history[:3, made.lists.balls.history[3] > 0.0] for made in (first, again)
+        solver.lists.balls.history[:3, solver.lists.balls.history[3] > 0.0]
+        for solver in (first, again)
     ]
     assert held[0].shape == (3, 2) and np.abs(held[0]).max() > 1e-4
     assert np.allclose(held[0], held[1], rtol=1e-9)
-    moments = [made.lists.balls.rolling_moment for made in (first, again)]
+    moments = [solver.lists.balls.rolling_moment for solver in (first, again)]
     assert np.allclose(np.abs(moments[0]).max(), np.abs(moments[1]).max(), rtol=1e-9)
     x = positions(again)
     assert np.abs(positions(advance(again, 0.02)) - x).max() < 1e-6
@@ -159,8 +160,8 @@ def test_a_state_of_other_bodies_is_refused(bodies, more, said):
     state = settle(PILE, 0.01, planes=[FLOOR, WALL]).save()
     table = {"planes": [FLOOR, WALL]} | more
     with pytest.raises(SceneError, match=said):
-        made, _ = read_begun(bodies, **table)
-        DemBodies(made).begin_from(state)
+        solver, _ = read_begun(bodies, **table)
+        DemBodies(solver).begin_from(state)
 
 
 def read_begun(bodies, **given):

@@ -8,72 +8,72 @@ LOCKED = ["x", "y", "z", "rotation_x", "rotation_y", "rotation_z"]
 GATE = {**FLOOR, "until": 0.05}
 
 
-def advance(made, time, dt=1e-4):
+def advance(solver, time, dt=1e-4):
     """Step to a time [s]."""
-    while made.accumulated.time < time - 1e-9:
-        made.step(min(dt, made.stable_dt(), time - made.accumulated.time))
-    return made
+    while solver.accumulated.time < time - 1e-9:
+        solver.step(min(dt, solver.stable_dt(), time - solver.accumulated.time))
+    return solver
 
 
-def height(made):
-    return float(made.give(frozenset({"motion.position"}))["motion.position"][0, 2])
+def height(solver):
+    return float(solver.give(frozenset({"motion.position"}))["motion.position"][0, 2])
 
 
-def velocity(made):
-    return float(made.give(frozenset({"motion.velocity"}))["motion.velocity"][0, 2])
+def velocity(solver):
+    return float(solver.give(frozenset({"motion.velocity"}))["motion.velocity"][0, 2])
 
 
 @pytest.mark.parametrize("body", [sphere((0.0, 0.0, 0.01)), box((0.0, 0.0, 0.075))])
 def test_a_body_falls_from_the_time_at_which_its_plane_vanishes(body):
-    made = advance(build([body], planes=[GATE]), 0.05)
-    assert abs(velocity(made)) < 1e-3
-    advance(made, 0.15)
-    assert velocity(made) == pytest.approx(-9.81 * 0.1, rel=2e-3)
+    solver = advance(build([body], planes=[GATE]), 0.05)
+    assert abs(velocity(solver)) < 1e-3
+    advance(solver, 0.15)
+    assert velocity(solver) == pytest.approx(-9.81 * 0.1, rel=2e-3)
 
 
 def test_a_plane_that_stays_holds_beside_one_that_vanishes():
-    made = build([sphere((0.0, 0.0, 0.01))], planes=[GATE, {**FLOOR, "point": [0.0, 0.0, -0.1]}])
-    assert height(advance(made, 0.6)) > -0.1
+    solver = build([sphere((0.0, 0.0, 0.01))], planes=[GATE, {**FLOOR, "point": [0.0, 0.0, -0.1]}])
+    assert height(advance(solver, 0.6)) > -0.1
 
 
 @pytest.mark.parametrize("shape", ["sphere", "box"])
 def test_a_held_body_is_released_at_its_time(shape):
     held = {"locked": LOCKED, "released_at": 0.05}
     body = sphere((0.0, 0.0, 1.0), **held) if shape == "sphere" else box((0.0, 0.0, 1.0), **held)
-    made = build([body])
-    assert height(advance(made, 0.05)) == 1.0
-    advance(made, 0.1)
-    assert velocity(made) == pytest.approx(-9.81 * 0.05, rel=1e-9)
+    solver = build([body])
+    assert height(advance(solver, 0.05)) == 1.0
+    advance(solver, 0.1)
+    assert velocity(solver) == pytest.approx(-9.81 * 0.05, rel=1e-9)
 
 
 def test_a_body_that_turned_evenly_keeps_its_angular_momentum_when_released():
     spin = [0.0, 5.0, 0.0]
     body = box((0, 0, 1.0), (0.1, 0.2, 0.3), locked=LOCKED, released_at=0.02, angular_velocity=spin)
-    made = build([body], gravity=[0.0, 0.0, 0.0])
-    before = advance(made, 0.01).totals().angular_momentum
-    after = advance(made, 0.05).totals().angular_momentum
+    solver = build([body], gravity=[0.0, 0.0, 0.0])
+    before = advance(solver, 0.01).totals().angular_momentum
+    after = advance(solver, 0.05).totals().angular_momentum
     assert after[1] == pytest.approx(before[1], rel=1e-9)
-    made.take({"load.torque": np.array([[0.0, 1e-2, 0.0]])})
-    made.step(1e-3)
-    assert made.totals().angular_momentum[1] - after[1] == pytest.approx(1e-5, rel=1e-6)
+    solver.take({"load.torque": np.array([[0.0, 1e-2, 0.0]])})
+    solver.step(1e-3)
+    assert solver.totals().angular_momentum[1] - after[1] == pytest.approx(1e-5, rel=1e-6)
 
 
 @pytest.mark.parametrize("time", [0.03, 0.07])
 def test_a_saved_state_goes_on_with_the_same_bits(time):
     bodies = [sphere((0.0, 0.0, 0.01)), box((0.3, 0.0, 1.0), locked=LOCKED, released_at=0.06)]
-    made = advance(build(bodies, planes=[GATE]), time)
-    state, other = made.save(), build(bodies, planes=[GATE])
+    solver = advance(build(bodies, planes=[GATE]), time)
+    state, other = solver.save(), build(bodies, planes=[GATE])
     advance(other, 0.08)  # all has vanished: it comes back
     other.load(state)
-    ends = [advance(each, 0.1).save() for each in (made, other)]
+    ends = [advance(each, 0.1).save() for each in (solver, other)]
     assert ends[0].keys() == ends[1].keys()
     assert all(np.array_equal(ends[0][key], ends[1][key]) for key in ends[0])
 
 
 def test_planes_that_have_vanished_are_not_drawn():
-    made = build([sphere((0.0, 0.0, 0.01))], planes=[GATE])
-    assert len(made.walls()["points"]) > 0
-    assert len(advance(made, 0.06).walls().get("points", ())) == 0
+    solver = build([sphere((0.0, 0.0, 0.01))], planes=[GATE])
+    assert len(solver.walls()["points"]) > 0
+    assert len(advance(solver, 0.06).walls().get("points", ())) == 0
 
 
 def test_without_times_nothing_is_kept_of_them():
@@ -81,5 +81,5 @@ def test_without_times_nothing_is_kept_of_them():
 
 
 def test_a_release_without_a_lock_is_refused():
-    said = mistakes([sphere((0.0, 0.0, 1.0), released_at=0.1)])[0]
-    assert "bodies[0].released_at must be of a body that is locked until then; found no" in said
+    mistake = mistakes([sphere((0.0, 0.0, 1.0), released_at=0.1)])[0]
+    assert "bodies[0].released_at must be of a body that is locked until then; found no" in mistake

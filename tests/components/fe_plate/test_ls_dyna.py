@@ -117,13 +117,13 @@ def test_sets_and_parts_have_names_and_numbers(tmp_path):
 
 
 def test_a_scene_chooses_nodes_and_elements_by_sets_of_the_file(tmp_path):
-    made = built(
+    plate = built(
         written(tmp_path, BOTH + SETS),
         fixed=(Fixed(node_set="left, face"),),
         gauges=Gauges(element_set_gauges=(Elements(element_set="Foot, new"),)),
     )
-    assert (made.model.free == 0).all(axis=1).nonzero()[0].tolist() == [0, 1, 2, 3]
-    assert [one.rows.tolist() for one in made.measured.element_sets] == [[1]]
+    assert (plate.model.free == 0).all(axis=1).nonzero()[0].tolist() == [0, 1, 2, 3]
+    assert [one.rows.tolist() for one in plate.measured.element_sets] == [[1]]
 
 
 def test_a_title_of_two_parts_is_no_name(tmp_path):
@@ -214,12 +214,12 @@ def test_generated_velocities_turn_about_an_axis(tmp_path):
 
 def test_the_scene_may_replace_velocities_of_the_file(tmp_path):
     file = written(tmp_path, BOTH + "*INITIAL_VELOCITY\n0\n1.,\n")
-    made = built(file, scale=1.0)
-    assert made.state.velocity.tolist() == [[1.0, 0.0, 0.0]] * 16
-    assert any("velocities of 16 nodes are the file's, up to 1 m/s" in n for n in made.notes())
-    made = built(file, velocity=(0.0, 0.0, 0.0))
-    assert not made.state.velocity.any()
-    assert any("velocities of 16 nodes are not used, for the scene" in n for n in made.notes())
+    plate = built(file, scale=1.0)
+    assert plate.state.velocity.tolist() == [[1.0, 0.0, 0.0]] * 16
+    assert any("velocities of 16 nodes are the file's, up to 1 m/s" in n for n in plate.notes())
+    plate = built(file, velocity=(0.0, 0.0, 0.0))
+    assert not plate.state.velocity.any()
+    assert any("velocities of 16 nodes are not used, for the scene" in n for n in plate.notes())
 
 
 def bad(place, found, text=BOTH):

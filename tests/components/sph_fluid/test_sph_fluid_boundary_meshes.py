@@ -41,8 +41,8 @@ def block(folder, low=LOW, high=HIGH, name="mesh.obj"):
     return exported(trimesh.creation.box(bounds=[low, high]), folder, name)
 
 
-def dam(*meshes, **given):
-    return fluid_params(**(DAM | {"boundary.meshes": list(meshes)} | given))
+def dam(*meshes, **options):
+    return fluid_params(**(DAM | {"boundary.meshes": list(meshes)} | options))
 
 
 def matched(points, others):
@@ -65,8 +65,8 @@ def test_a_box_from_a_file_has_the_particles_of_the_built_in_one(tmp_path, name,
 
 
 def test_particles_begin_at_the_offset_that_the_scene_sets(tmp_path):
-    given = {"boundary.method": "dbc", "boundary.wall_offset": 1.0}
-    points, _ = from_meshes(dam({"file": block(tmp_path)}, **given))
+    options = {"boundary.method": "dbc", "boundary.wall_offset": 1.0}
+    points, _ = from_meshes(dam({"file": block(tmp_path)}, **options))
     depth = np.minimum(points - np.array([*LOW[:2], -1.0]), np.array(HIGH) - points).min(axis=1)
     assert depth.min() == pytest.approx(SPACING, rel=1e-6)
     assert depth.max() < 2.0 * 1.5 * SPACING  # the fluid feels no others
@@ -91,11 +91,11 @@ def test_water_meets_a_box_from_a_file_as_the_built_in_one(tmp_path):
 
 def tank(folder, lid, name="tank.stl"):
     """A cylinder about z, of radius 0.2 m and 0.4 m high; its triangles look outwards."""
-    made = trimesh.creation.cylinder(radius=0.2, height=0.4, sections=48)
-    made.apply_translation([0.0, 0.0, 0.2])
+    solid_mesh = trimesh.creation.cylinder(radius=0.2, height=0.4, sections=48)
+    solid_mesh.apply_translation([0.0, 0.0, 0.2])
     if not lid:
-        made.update_faces(made.triangles_center[:, 2] < 0.399)
-    return exported(made, folder, name)
+        solid_mesh.update_faces(solid_mesh.triangles_center[:, 2] < 0.399)
+    return exported(solid_mesh, folder, name)
 
 
 def filled(file, surface, radius=0.19):
@@ -163,21 +163,21 @@ def test_the_volume_of_layers_is_measured_in_slabs(tmp_path, monkeypatch):
 
 @pytest.mark.parametrize("shape", ["ball", "ring", "brick"])
 def test_depths_are_those_of_the_nearest_place(tmp_path, shape):
-    made = {
+    solid_mesh = {
         "ball": lambda: trimesh.creation.icosphere(subdivisions=2, radius=0.5),
         "ring": lambda: trimesh.creation.torus(0.5, 0.2, 16, 12),
         "brick": lambda: trimesh.creation.box(extents=(1.0, 0.6, 0.3)),
     }[shape]()
-    file = exported(made, tmp_path)
+    file = exported(solid_mesh, tmp_path)
     measured = Surface(BoundaryMesh(file=file), 0.05, 0.15)
-    made = trimesh.load_mesh(file)  # its digits
+    solid_mesh = trimesh.load_mesh(file)  # its digits
     rng = np.random.default_rng(3)
     places = rng.uniform(-0.8, 0.8, (600, 3))
     below, normal = measured.depths(places)
     near = np.abs(below) < 0.15
     assert near.sum() > 50
-    feet = mesh_files.nearest(places, made.triangles)
-    inside = mesh_files.inside(places, made.triangles)
+    feet = mesh_files.nearest(places, solid_mesh.triangles)
+    inside = mesh_files.inside(places, solid_mesh.triangles)
     assert np.array_equal(below > 0.0, inside)
     distance = np.linalg.norm(places - feet, axis=1)
     assert np.abs(below)[near] == pytest.approx(distance[near], abs=1e-9)
@@ -204,16 +204,16 @@ def test_what_is_drawn_has_the_triangles(tmp_path):
 
 
 def open_box(folder):
-    made = trimesh.creation.box(bounds=[LOW, HIGH])
-    made.update_faces(np.arange(12) > 1)
-    return exported(made, folder)
+    solid_mesh = trimesh.creation.box(bounds=[LOW, HIGH])
+    solid_mesh.update_faces(np.arange(12) > 1)
+    return exported(solid_mesh, folder)
 
 
 def doubled(folder):
-    made = trimesh.creation.box(bounds=[LOW, HIGH])
-    again = made.copy()
+    solid_mesh = trimesh.creation.box(bounds=[LOW, HIGH])
+    again = solid_mesh.copy()
     again.apply_translation([0.1, 0.0, 0.0])
-    return exported(trimesh.util.concatenate([made, again]), folder)
+    return exported(trimesh.util.concatenate([solid_mesh, again]), folder)
 
 
 def mixed(folder):
@@ -270,26 +270,26 @@ def test_meshes_that_overlap_are_refused(tmp_path):
 
 
 def test_a_mesh_in_an_obstacle_is_refused(tmp_path):
-    given = {"boundary.obstacles": [((0.9, 0.2, 0.0), (1.3, 0.6, 0.4))]}
+    options = {"boundary.obstacles": [((0.9, 0.2, 0.0), (1.3, 0.6, 0.4))]}
     with pytest.raises(ValueError, match=r"not overlap boundary.obstacles\[0\]; 128 of its 492 "):
-        dam({"file": block(tmp_path)}, **given)
+        dam({"file": block(tmp_path)}, **options)
     beside = block(tmp_path, LOW, (0.9, 0.6, 0.4), "beside.obj")
-    dam({"file": beside}, **given)  # it may touch one
+    dam({"file": beside}, **options)  # it may touch one
 
 
 @pytest.mark.parametrize("method", ["mdbc", "dbc"])
 def test_a_mesh_has_no_particles_in_a_closed_wall_of_the_tank(tmp_path, method):
-    given = {"boundary.method": method}
-    whole, _ = from_meshes(dam({"file": block(tmp_path)}, **given))
+    options = {"boundary.method": method}
+    whole, _ = from_meshes(dam({"file": block(tmp_path)}, **options))
     sunk = block(tmp_path, (*LOW[:2], -0.2), name="sunk.obj")
-    params = dam({"file": sunk}, **given)
+    params = dam({"file": sunk}, **options)
     points, _ = from_meshes(params)
     apart, _ = cKDTree(wall_points(params)).query(points)
     assert apart.min() > 0.99 * SPACING
     distance, _ = matched(points[points[:, 2] > 0.0], whole)
     assert distance < 1e-7
-    given["boundary.open_faces"] = ["z-", "z+"]
-    points, _ = from_meshes(dam({"file": sunk}, **given))
+    options["boundary.open_faces"] = ["z-", "z+"]
+    points, _ = from_meshes(dam({"file": sunk}, **options))
     assert points[:, 2].min() < -0.1
 
 
@@ -307,9 +307,9 @@ OPTIONS = {
 
 
 @pytest.mark.parametrize(("given", "reason"), OPTIONS.values(), ids=OPTIONS)
-def test_what_meshes_cannot_go_with_is_refused(tmp_path, given, reason):
+def test_what_meshes_cannot_go_with_is_refused(tmp_path, options, reason):
     with pytest.raises(ValueError, match=reason):
-        dam({"file": block(tmp_path)}, **given)
+        dam({"file": block(tmp_path)}, **options)
 
 
 def test_a_mesh_needs_a_file():

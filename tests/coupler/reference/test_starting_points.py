@@ -44,7 +44,7 @@ def test_a_new_scene_meets_its_exact_solution(begun, capsys):
         main(["run", str(folder / "scene.toml"), "--out", str(folder / "run")])
     assert ended.value.code == 0
     expectations = results(folder / "run")["expect"]
-    assert [one["met"] for one in expectations] == [True]
+    assert [outcome["met"] for outcome in expectations] == [True]
     assert results(folder / "run")["scene"] == "first_try"
 
 

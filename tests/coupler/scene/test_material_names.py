@@ -131,8 +131,8 @@ def test_a_named_liquid_fills_density_and_viscosity():
     water = load("standing_wave", settings=["components.water.material=sea-water"], imports=False)
     keys, sea = water.resolved["components"]["water"], library()["sea-water"]
     assert keys["density"] == 1000.0  # of the scene, which goes before the material
-    given = tomllib.loads(water.path.read_text())["components"]["water"]["viscosity"]
-    assert keys["viscosity"] == {"kinematic": sea["kinematic_viscosity"], **given}
+    viscosity = tomllib.loads(water.path.read_text())["components"]["water"]["viscosity"]
+    assert keys["viscosity"] == {"kinematic": sea["kinematic_viscosity"], **viscosity}
 
 
 def test_editors_accept_names_in_the_place_of_tables():
@@ -147,9 +147,9 @@ def test_the_command_prints_every_material(name, capsys):
     with pytest.raises(SystemExit) as ended:
         main(["materials", *([name] if name else [])])
     assert ended.value.code == 0
-    said = capsys.readouterr().out
-    assert all(known in said for known in ([name] if name else library()))
-    assert not name or "[1]" in said
+    printed = capsys.readouterr().out
+    assert all(known in printed for known in ([name] if name else library()))
+    assert not name or "[1]" in printed
     with pytest.raises(SystemExit):
         main(["materials", *([name] if name else []), "--json"])
     data = json.loads(capsys.readouterr().out)
@@ -161,6 +161,6 @@ def test_the_command_refuses_an_unknown_name(capsys):
     with pytest.raises(SystemExit) as ended:
         main(["materials", "steel-4430"])
     assert ended.value.code == 2
-    said = capsys.readouterr().err
-    assert "Did you mean steel-4340?" in said
-    assert "The library has" in said
+    printed = capsys.readouterr().err
+    assert "Did you mean steel-4340?" in printed
+    assert "The library has" in printed

@@ -92,7 +92,7 @@ def _parsed(kind: Callable[[str], Value], field: str) -> Value | None:
 
 
 def blocks(path: Path) -> list[Block]:
-    """Read all keywords of a file and of those that it includes, in order."""
+    """Read the keywords of a file and of its included files, in order."""
     all_blocks: list[Block] = []
     _read(path, path.parent.resolve(), STANDARD, (), all_blocks)
     return all_blocks
