@@ -8,12 +8,12 @@ import sys
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from importlib import import_module
-from importlib.metadata import entry_points
 from pathlib import Path
 from typing import Any
 
 from quintet.interfaces.component import PATIENCE, Array, Component, Field, Fields, Port
 from quintet.interfaces.errors import SceneError
+from quintet.interfaces.installed import installed
 from quintet.interfaces.params import unknown
 
 Ports = tuple[tuple[Port, ...], tuple[Port, ...]]  # takes, gives
@@ -183,7 +183,7 @@ def manifest_of(cls: type[Component], path: str, kind: str = "") -> Manifest:
 
 def known_kinds() -> dict[str, str]:
     """Names under which components are installed, with the paths that they stand for."""
-    return {entry.name: entry.value for entry in entry_points(group="quintet.components")}
+    return {entry.name: entry.value for entry in installed("quintet.components")}
 
 
 def unknown_kind(where: str, kind: str, more: Iterable[str] = ()) -> str:
@@ -192,7 +192,7 @@ def unknown_kind(where: str, kind: str, more: Iterable[str] = ()) -> str:
     New names stand in a tuple, named by an entry point of the group
     ``quintet.renamed_components``.
     """
-    for entry in entry_points(group="quintet.renamed_components"):
+    for entry in installed("quintet.renamed_components"):
         if entry.name == kind:
             return f"{where} is now {' or '.join(entry.load())}. Rename it."
     return unknown(where, kind, [*more, *known_kinds()])

@@ -17,7 +17,7 @@ MAY_IMPORT = {
 # in its own wing, anything. What stands on one floor does not know of each other.
 FLOORS = {
     "interfaces": [
-        {"errors", "waited"},
+        {"errors", "waited", "installed"},
         {"libraries"},
         {"units", "params", "recordings"},
         {"component", "keys"},

@@ -18,7 +18,6 @@ from quintet.interfaces.params import parameters
 from quintet.interfaces.serving.process import STARTER
 
 _announced: set[tuple[str, str]] = set()  # kinds, and the files of which this process told
-_own_params: dict[str, type] = {}  # parameter classes of the kinds that come with quintet
 
 
 @parameters
@@ -53,17 +52,12 @@ def trusted_params(kind: Any, folder: Path, imports: bool) -> type | None:
     """
     if not isinstance(kind, str):
         return None
-    if kind in _own_params:
-        return _own_params[kind]
     if not (imports or is_trusted(kind, folder)):
         return None
     try:
         manifest = find(kind)
     except (Exception, SystemExit):  # of any kind: reported as the component is read
         return None
-    # Looking for an installed kind takes 10 ms, and every variant of a scene asks for its kinds.
-    if ":" not in kind and manifest.component.startswith("quintet."):
-        _own_params[kind] = manifest.params
     return manifest.params
 
 

@@ -9,7 +9,6 @@ import hashlib
 import json
 from collections.abc import Iterator, Mapping
 from functools import cache
-from importlib.metadata import entry_points
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
@@ -17,6 +16,7 @@ from typing import Any
 from quintet.coupler.files.run_files import RECORDING
 from quintet.coupler.run.results import machine
 from quintet.coupler.scene.scene import Scene, kinds_of
+from quintet.interfaces.installed import installed
 
 DIGITS = 16  # of a hash, hexadecimal
 TEXTS = ("title", "about", "minutes")  # keys of a scene on which no result depends
@@ -71,7 +71,7 @@ def _sources() -> str:
 @cache
 def kind_versions(kinds: tuple[str, ...]) -> dict[str, str]:
     """Package and version of each kind that another package brings."""
-    owners = {point.name: point.dist for point in entry_points(group="quintet.components")}
+    owners = {point.name: point.dist for point in installed("quintet.components")}
     packages = {kind: owners.get(kind) for kind in kinds}
     return {
         kind: f"{package.name} {package.version}"

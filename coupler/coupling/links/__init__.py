@@ -4,20 +4,19 @@ A kind is a `keys.LinkKind`, found by its name under the entry-point group ``qui
 kinds that a scene names are imported.
 """
 
-from importlib.metadata import entry_points
-
 from quintet.coupler.coupling.links.keys import LinkKind
 from quintet.interfaces.errors import SceneError
+from quintet.interfaces.installed import installed
 
 
 def known_links() -> dict[str, str]:
     """Kinds of links that are installed, with the functions that make them."""
-    return {entry.name: entry.value for entry in entry_points(group="quintet.links")}
+    return {entry.name: entry.value for entry in installed("quintet.links")}
 
 
 def maker(kind: str) -> LinkKind:
     """Return what makes links of a kind, with its keys; KeyError if none is installed."""
-    (entry,) = entry_points(group="quintet.links", name=kind) or (None,)
+    entry = next((entry for entry in installed("quintet.links") if entry.name == kind), None)
     if entry is None:
         raise KeyError(kind)
     loaded = entry.load()

@@ -306,7 +306,7 @@ OPTIONS = {
 }
 
 
-@pytest.mark.parametrize(("given", "reason"), OPTIONS.values(), ids=OPTIONS)
+@pytest.mark.parametrize(("options", "reason"), OPTIONS.values(), ids=OPTIONS)
 def test_what_meshes_cannot_go_with_is_refused(tmp_path, options, reason):
     with pytest.raises(ValueError, match=reason):
         dam({"file": block(tmp_path)}, **options)

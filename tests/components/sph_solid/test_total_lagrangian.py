@@ -50,7 +50,7 @@ def test_gradients_of_linear_motion_are_exact_in_deformed_bodies(dimensions):
     count = made.state.particles
     made.rows.place[:count, :3] = made.state.position @ deformed.T
     made.rows.motion[:count, :3] = made.rows.place[:count, :3] @ rate.T
-    made._write_gradients()
+    made.sums.write_gradients(made.rows, made.law)
     assert made.rows.gradient == pytest.approx(np.tile(rate.ravel(), (count, 1)), abs=1e-12)
 
 
