@@ -78,7 +78,7 @@ def face_normal(ax, ay, az, bx, by, bz):  # type: ignore[no-untyped-def]
     return x / size, y / size, z / size
 
 
-@njit(**FAST)
+@njit(**EXACT)
 def face_normals(off: Array, back: Array) -> Array:
     """Normals (m, 3) of the faces across, from vectors (m, 3) m out of both faces of films."""
     normals = np.empty_like(off)
