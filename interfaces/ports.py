@@ -119,7 +119,8 @@ NODE_MASS = Port("node_mass", fields=(Field("added", (), "kg"),))
 PLACE = replace(POSITION, rate="")
 LAYER = (
     Field("mass", (), "kg"),  # of each node
-    Field("modulus", (), "Pa"),  # K + 4G/3 behind each face
+    Field("bulk", (), "Pa"),  # K behind each face
+    Field("shear", (), "Pa"),  # G
     Field("thickness", (), "m"),  # of the element behind each face: volume over area
     Field("step", (), "s"),  # one row: stable step of the mesh without contact
 )

@@ -72,9 +72,9 @@ def _on_a_face(params: dict[str, Any]) -> ConformCase:
     lowest = min(body["centre"][2] for body in params["bodies"])
     place = np.column_stack([corners, np.full(4, lowest - BALL["radius"] - 1e-9)])
     static = {
-        "corner": np.arange(4.0)[None], "mass": np.full(4, 0.05), "modulus": np.full(1, 1e7),
-        "thickness": np.full(1, 0.01), "friction": np.full(1, 0.3), "stiffness": np.full(1, 1.0),
-        "safety": np.full(1, 0.9), "step": np.full(1, 1e-3),
+        "corner": np.arange(4.0)[None], "mass": np.full(4, 0.05), "bulk": np.full(1, 1e7),
+        "shear": np.full(1, 5e6), "thickness": np.full(1, 0.1), "friction": np.full(1, 0.3),
+        "stiffness": np.full(1, 1.0), "safety": np.full(1, 0.9), "step": np.full(1, 1e-3),
     }  # fmt: skip
     motion = {"position": place, "velocity": np.zeros((4, 3))}
     case = _case("spheres on a face", params, smooth=False)

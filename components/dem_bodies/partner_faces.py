@@ -1,7 +1,10 @@
 """Contact of spheres with the faces of a partner's mesh."""
 
+import math
+
 import numpy as np
 
+from quintet.components.dem_bodies.contact.materials import DURATION, SPEED_UP
 from quintet.components.dem_bodies.params import DemBodiesParams, Material
 from quintet.components.dem_bodies.state import OMEGA, VELOCITY, Model, State
 from quintet.components.shared.contact.kernels import Points
@@ -9,11 +12,12 @@ from quintet.components.shared.contact.penalty import PenaltyContact
 from quintet.interfaces.component import Array, Fields, Resources
 from quintet.interfaces.errors import SceneError
 
+NO_AREA = np.zeros(0)  # m2, which only penalty forces need
 NONE_FIXED = np.zeros(0, np.int64)  # spheres that touch faces are free
 
 
 class PartnerFaces:
-    """Faces that spheres touch; each sphere has the contact area R² and the thickness 2 R."""
+    """Faces that spheres touch by Hertz's and Mindlin's forces."""
 
     def __init__(
         self, static: Fields, params: DemBodiesParams, model: Model, state: State, mass: Array
@@ -21,10 +25,20 @@ class PartnerFaces:
         rows, count = state.row[: len(mass)], len(mass)
         self.mass, self.radius = mass, model.sphere_radius[rows].copy()
         self.inverse_moment = model.inverse_moment[rows].copy()
-        moduli = np.array([modulus(material) for material in params.materials.values()])
-        self.modulus, self.count = moduli[model.material[rows]], count
-        self.penalty = PenaltyContact(static, count, float(self.radius.max()))
+        of_materials = np.array([moduli(material) for material in params.materials.values()])
+        self.modulus, self.tangential = of_materials[model.material[rows]].T.copy()
+        self.count = count
+        # A step that a scene sets is to find the limit of stability.
+        self.steps = params.steps_per_contact if params.fixed_step is None else 0
+        self.penalty = PenaltyContact(static, count, float(self.radius.max()), spheres=True)
         self.penalty.start(state.motion[rows, VELOCITY : VELOCITY + 3])
+
+    def stable_step(self) -> float:
+        """Stable step [s], and a part of the duration of the fastest impact that is near."""
+        stable, impact = self.penalty.stable_step(math.inf), self.penalty.numbers.impact
+        if not impact or not self.steps:
+            return stable
+        return min(stable, DURATION * SPEED_UP / math.sqrt(impact) / self.steps)
 
     def kick(self, state: State, dt: float) -> None:
         """Change velocities by contact in a step of dt [s], with its forces at the begin."""
@@ -34,7 +48,7 @@ class PartnerFaces:
         spin = np.ascontiguousarray(moving[:, OMEGA : OMEGA + 3])
         points = Points(
             np.ascontiguousarray(moving[:, :3]), velocity, np.arange(self.count), self.mass,
-            self.radius**2, self.modulus, self.radius, spin, self.inverse_moment,
+            NO_AREA, self.modulus, self.tangential, self.radius, spin, self.inverse_moment,
             NONE_FIXED,
         )  # fmt: skip
         self.penalty.kick(points, dt)
@@ -42,9 +56,10 @@ class PartnerFaces:
         state.motion[rows, OMEGA : OMEGA + 3] = spin
 
 
-def modulus(material: Material) -> float:
-    """Modulus [Pa] of plane contact, E/(1 - ν²)."""
-    return material.youngs_modulus / (1.0 - material.poissons_ratio**2)
+def moduli(material: Material) -> tuple[float, float]:
+    """E/(1 - ν²) and G/(2 - ν) [Pa] of Hertz's and Mindlin's contacts."""
+    e, v = material.youngs_modulus, material.poissons_ratio
+    return e / (1.0 - v * v), e / (2.0 * (1.0 + v) * (2.0 - v))
 
 
 def require_one_rank(resources: Resources) -> None:

@@ -20,7 +20,7 @@ def areas(position: Array, face: Whole) -> Array:
 def described_layer(
     built: Structure, surface: Whole, owner: Whole, area: Array
 ) -> dict[str, Array]:
-    """Masses (k,) kg of nodes of the surface; modulus and thickness (m,) behind its faces.
+    """Masses (k,) kg of nodes of the surface; moduli and thickness (m,) behind its faces.
 
     Parameters
     ----------
@@ -32,9 +32,10 @@ def described_layer(
         Element behind each face.
     area : (m,) float array, m2
     """
-    modulus = np.array([law.bulk + 4.0 / 3.0 * law.shear for law in built.laws])
+    part = built.mesh.part[owner]
     return {
         "mass": built.mass[surface],
-        "modulus": modulus[built.mesh.part[owner]],
+        "bulk": np.array([law.bulk for law in built.laws])[part],
+        "shear": np.array([law.shear for law in built.laws])[part],
         "thickness": built.volume[owner] / area,
     }

@@ -4,6 +4,7 @@ import laboratory
 import numpy as np
 import pytest
 
+from quintet.components.shared.contact.stable_step import highest_square
 from quintet.coupler.coupling.links import maker
 from quintet.coupler.coupling.participant import ComponentFailed
 from quintet.interfaces.component import outputs_of
@@ -128,8 +129,9 @@ def test_the_window_is_the_predicted_step_once_contact_is_near(tmp_path):
     trace = _impact(tmp_path, end=0.05)
     block, slab = trace.components["block"], trace.components["slab"]
     penalty = block.faces.penalty
-    square = max((2.0 / block.state.bound) ** 2, (2.0 / penalty.step_of_faces) ** 2)
-    predicted = 0.9 * 2.0 / np.sqrt(square + penalty.numbers.rate)
+    alone = (2.0 / block.state.bound) ** 2, (2.0 / penalty.step_of_faces) ** 2
+    square = highest_square(alone, (penalty.numbers.points, penalty.numbers.nodes))
+    predicted = 0.9 * 2.0 / np.sqrt(square)
     assert block.stable_dt() == pytest.approx(min(predicted, 0.5 * block.state.bound))
     assert np.diff(trace.times)[2:].max() <= min(block.stable_dt(), slab.stable_dt()) * 1.0001
 
@@ -191,7 +193,9 @@ def test_a_sphere_bounces_off_elements_with_momentum_and_energy(tmp_path):
 
 def test_a_sphere_that_slides_goes_on_to_roll(tmp_path):
     # Coulomb's friction takes two sevenths of the velocity of a sphere, whatever its coefficient.
-    sphere = _sphere(0.2 + SPACING - 0.5e-3, [0.3, 0.0, 0.0], gravity=[0.0, 0.0, -1.0])
+    weight = 1000.0 * 4.0 / 3.0 * np.pi * SPACING**3
+    pressed = (weight / (4.0 / 3.0 * 0.5e5 * SPACING**0.5)) ** (2.0 / 3.0)  # m, by Hertz
+    sphere = _sphere(0.2 + SPACING - pressed, [0.3, 0.0, 0.0], gravity=[0.0, 0.0, -1.0])
     held = [{"lowest": [0, 0, 0], "highest": [2, 1, 1], "directions": ["x", "y", "z"]}]
     slab = _slab([0, 0, 0], [1.2, 0.4, 0.2], fixed=held, integration="reduced")
     trace = _couple(tmp_path, sphere, slab, 1.2, friction=0.3)

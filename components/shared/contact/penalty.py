@@ -5,20 +5,20 @@ from dataclasses import astuple, dataclass, replace
 
 import numpy as np
 
-from quintet.components.shared.contact.kernels import (
-    Loads,
-    Near,
-    Points,
-    Surface,
-    furthest_from,
-    list_near,
-    touch,
+from quintet.components.shared.contact.kernels import Loads, Points, Surface, furthest_from, touch
+from quintet.components.shared.contact.moduli import (
+    longitudinal_modulus,
+    plane_modulus,
+    tangential_modulus,
 )
+from quintet.components.shared.contact.search import Near, list_near
+from quintet.components.shared.contact.stable_step import highest_square
 from quintet.components.shared.geometry.face_projection import cells_of
 from quintet.interfaces.component import Array, Fields
 
 PORT, ACTIVE, FORCE = "contact_faces", "contact_activity.active", "contact_load.force"
 POSITION, VELOCITY = f"{PORT}.position", f"{PORT}.velocity"
+MOST_SPREAD = 0.2  # radius of a contact over the thickness of elements
 HEAD = "contact/"  # prefix of the keys in saved states
 
 
@@ -28,7 +28,10 @@ class Numbers:
 
     energy: float = 0.0  # J, held by springs
     dissipated: float = 0.0  # J, by friction so far
-    rate: float = 0.0  # 1/s2, bound of what contact adds to the square of the highest frequency
+    points: float = 0.0  # 1/s2, largest ω² of a particle on faces at rest
+    nodes: float = 0.0  # 1/s2, largest ω² of what holds a particle, were it at rest
+    impact: float = 0.0  # 1/s2, largest k/m of a particle, as deep as it may come
+    spread: float = 0.0  # 1, largest radius of a sphere's contact over the thickness of elements
     deepest: float = 0.0  # m, of all penetrations so far
     work: float = 0.0  # J, done on the particles by the motion of the faces so far
     # J, that the kinetic energy lacks: velocities have none of the coming step's force yet, and at
@@ -54,13 +57,20 @@ class PenaltyContact:
     particles : int
     radius : float, m
         Of the largest particle: they touch a face at their radius, half a spacing.
+    spheres : bool
+        Whether they are spheres, which touch by Hertz's law.
     """
 
-    def __init__(self, static: Fields, particles: int, radius: float) -> None:
+    def __init__(
+        self, static: Fields, particles: int, radius: float, spheres: bool = False
+    ) -> None:
         of = {key.partition(".")[2]: np.array(array) for key, array in static.items()}
         self.corner = np.ascontiguousarray(of["corner"], np.int64)
         self.mass, self.radius = of["mass"], radius
-        self.faces = of["modulus"], of["thickness"], of["friction"], of["stiffness"]
+        moduli = of["bulk"], of["shear"]
+        modulus = plane_modulus(*moduli) if spheres else longitudinal_modulus(*moduli)
+        layer = of["thickness"], of["friction"], of["stiffness"], of["mass"]
+        self.faces = modulus, tangential_modulus(*moduli), *layer
         self.safety, self.step_of_faces = float(of["safety"].min()), float(of["step"].min())
         nodes = len(self.mass)
         self.active = np.ones(len(self.corner))
@@ -104,16 +114,15 @@ class PenaltyContact:
         moving = (self.position - self.before) / last if last else np.zeros((nodes, 3))
         near, apart = self._list(points, moving, last)
         self.reaction, stiffness = np.zeros((nodes, 3)), np.zeros(nodes)
-        surface = Surface(self.corner, self.active, *self.faces, self.position, moving)
+        surface = Surface(self.corner, *self.faces, self.position, moving)
         loads = Loads(self.reaction, stiffness, self.slip, self.held, self.kicked)
         sums = touch(points, surface, near, last, dt, loads)
         self.before, numbers.last = self.position.copy(), dt
         numbers.work -= dt * float((self.reaction * self.velocity).sum())
         numbers.energy, numbers.half_kick = sums.energy, sums.half_kick
         numbers.dissipated += sums.dissipated
-        of_nodes = float((stiffness / self.mass).max(initial=0.0))
-        turning = sums.turning + 0.5 * of_nodes if sums.turning else 0.0
-        numbers.rate = max(sums.rate, of_nodes, turning)
+        numbers.points, numbers.nodes = sums.points, sums.nodes
+        numbers.impact, numbers.spread = sums.impact, max(numbers.spread, sums.spread)
         numbers.deepest = max(numbers.deepest, sums.depth)
         numbers.limit = min(sums.limit, apart)
 
@@ -135,10 +144,13 @@ class PenaltyContact:
         faces = np.flatnonzero(self.active)
         if not len(faces) or not np.isfinite(place).all():
             nothing = np.zeros(0, np.int64)
-            self.near = Near(nothing, np.zeros(1, np.int64), nothing)
+            self.near = Near(nothing, np.zeros(1, np.int64), nothing, nothing, nothing)
         else:
             cells = cells_of(np.ascontiguousarray(place[self.corner[faces]]))
-            self.near = list_near(points.place, 2.0 * self.radius + self.slack, cells, faces)
+            reach = 2.0 * self.radius + self.slack
+            row, begin, near = list_near(points.place, reach, cells, faces)
+            listed, face = np.unique(near, return_inverse=True)
+            self.near = Near(row, begin, face, listed, np.full(len(row), -1))
         self._let_go(points.identity[self.near.row])
         self._note_opened(points)
         return self.near, apart
@@ -156,21 +168,20 @@ class PenaltyContact:
         if self.numbers.opened or not len(gone) or not np.isfinite(self.position).all():
             return
         cells = cells_of(np.ascontiguousarray(self.position[self.corner[gone]]))
-        near = list_near(points.place, 2.0 * self.radius + self.slack, cells, gone)
-        self.numbers.opened = float(len(near.row) > 0)
+        row, _, _ = list_near(points.place, 2.0 * self.radius + self.slack, cells, gone)
+        self.numbers.opened = float(len(row) > 0)
 
     def stable_step(self, bound: float) -> float:
         """Largest step [s] of particles in contact, of which those without have a bound [s].
 
-        Stiffnesses add up, so that ω² is at most the greater one of both sides, plus what contact
-        adds by its row sums (Gershgorin). Of spheres that stick and turn it is at most the largest
-        k (1/m + R²/I) of a sphere plus the largest Σ k N/m of a node. In a step no particle comes
-        more than half of the way to where it would pass through a face.
+        In a step no particle comes more than half of the way to where it would pass through a face.
         """
-        if not self.numbers.rate:
-            return self.numbers.limit
-        square = max((2.0 / bound) ** 2, (2.0 / self.step_of_faces) ** 2) + self.numbers.rate
-        return min(self.numbers.limit, self.safety * 2.0 / math.sqrt(square))
+        numbers = self.numbers
+        if not numbers.points:
+            return numbers.limit
+        alone = (2.0 / bound) ** 2, (2.0 / self.step_of_faces) ** 2
+        square = highest_square(alone, (numbers.points, numbers.nodes))
+        return min(numbers.limit, self.safety * 2.0 / math.sqrt(square))
 
     def save(self) -> Fields:
         """Copy out all state."""
@@ -202,7 +213,7 @@ class PenaltyContact:
         start = self.save()
         is_same = all(key in state and state[key].shape == start[key].shape for key in start)
         numbers = Numbers(*state[f"{HEAD}numbers"].tolist()) if is_same else self.numbers
-        numbers = replace(numbers, dissipated=0.0, deepest=0.0, work=0.0, opened=0.0)
+        numbers = replace(numbers, dissipated=0.0, deepest=0.0, work=0.0, opened=0.0, spread=0.0)
         history = {key: state[key] for key in start} if is_same else start
         return {**history, f"{HEAD}numbers": np.array(astuple(numbers))}
 
@@ -214,6 +225,12 @@ class PenaltyContact:
                 "particles must stay outside of the faces that they touch; one went "
                 f"{self.numbers.deepest:.3g} m deep, and beyond {2.0 * self.radius:.3g} m it would "
                 "pass through. Raise the link's stiffness, or refine both sides."
+            )
+        if self.numbers.spread > MOST_SPREAD:
+            texts["indentation"] = (
+                f"spheres must touch on a radius of at most {MOST_SPREAD:g} of the thickness of "
+                "an element, as elements that resolve a dent add it to that of Hertz's law; found "
+                f"{self.numbers.spread:.2g}. Take thicker elements, or particles of sph_solid."
             )
         if self.numbers.opened:
             texts["erosion"] = (

@@ -11,11 +11,11 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from quintet.components.shared.numba_options import EXACT
+
 Array = NDArray[np.float64]
 Whole = NDArray[np.int64]
 
-# As written: sums keep their order, and division by zero gives ∞.
-EXACT = {"error_model": "numpy", "cache": True, "nogil": True}
 STEPS = 20  # of the iteration for the foot of a perpendicular, at most
 SETTLED = 1e-15  # change of ξ and η at which it ends
 THIN = 1e-24  # of its other side squared: an edge, which has no width
@@ -172,7 +172,7 @@ def nearest_faces(
                             alike = 0.0
                             for d in range(3):
                                 alike += rivals.facing[n, d] * rivals.normal[f, d]
-                            if alike >= rivals.most or outside(p, corner[f], best):
+                            if alike >= rivals.most or box_distance(p, corner[f]) > best:
                                 continue
                             xi, eta, d2 = foot(p, corner[f], room)
                             if d2 < best or (d2 == best and f < face[n]):
@@ -182,15 +182,14 @@ def nearest_faces(
 
 
 @njit(**EXACT)
-def outside(p, x, d2):  # type: ignore[no-untyped-def]
-    """Whether the box around a face (4, 3) is further from a point than the root of d2."""
+def box_distance(p, x):  # type: ignore[no-untyped-def]
+    """Squared distance [m2] of a point from the box around a face (4, 3)."""
     away = 0.0
     for d in range(3):
         least = min(min(x[0, d], x[1, d]), min(x[2, d], x[3, d]))
         most = max(max(x[0, d], x[1, d]), max(x[2, d], x[3, d]))
-        beyond = max(least - p[d], p[d] - most, 0.0)
-        away += beyond * beyond
-    return away > d2
+        away += max(max(least - p[d], p[d] - most), 0.0) ** 2
+    return away
 
 
 @njit(**EXACT)

@@ -32,7 +32,7 @@ from quintet.interfaces.ports import (
 
 MOTION = ("position", "velocity")
 OF_NODES = ("mass",)
-OF_FACES = ("modulus", "thickness")
+OF_FACES = ("bulk", "shear", "thickness")
 WHY = (
     "a penalty force must follow the motion of both sides in every step: both step once in every "
     "window, and the particles, which compute the force, step before the mesh that it acts on"
@@ -50,8 +50,8 @@ class ContactKeys:
     friction : 1
         Coulomb's coefficient.
     stiffness : 1
-        Scale of the penalty stiffness (SLSFAC). At 1 a contact gives way as much as one layer of
-        particles and one layer of elements under the same pressure.
+        Scale of the stiffness (SLSFAC). At 1 a contact of particles gives way as much as one layer
+        of particles and one layer of elements under the same pressure, and spheres follow Hertz.
     safety : 1
         Share of the predicted stable step of contact that is used.
     """

@@ -1,62 +1,8 @@
-"""Penalty contact of particles with faces: directions, reactions, stable step, friction."""
+"""Penalty contact of particles with faces: directions, reactions, friction, history."""
 
 import numpy as np
 import pytest
-
-from quintet.components.shared.contact.kernels import Points
-from quintet.components.shared.contact.penalty import PenaltyContact
-
-RADIUS, MODULUS, THICK = 0.5, 2.0, 1.0  # m, Pa, m
-# Two squares in the plane z = 0 that share an edge, and a wall that falls from the second's end.
-NODES = np.array(
-    [[0, 0, 0], [2, 0, 0], [4, 0, 0], [0, 2, 0], [2, 2, 0], [4, 2, 0], [4, 0, -2], [4, 2, -2]],
-    float,
-)
-FACES = np.array([[0, 1, 4, 3], [1, 2, 5, 4], [2, 6, 7, 5]])
-
-
-def _contact(particles, node=NODES, face=FACES, mass=1.0, friction=0.0, stiffness=1.0, safety=1.0):
-    count = len(face)
-    static = {
-        "corner": face.astype(float),
-        "mass": np.full(len(node), mass),
-        "modulus": np.full(count, MODULUS),
-        "thickness": np.full(count, THICK),
-        "friction": np.full(count, friction),
-        "stiffness": np.full(count, stiffness),
-        "safety": np.array([safety]),
-        "step": np.array([1e9]),
-    }
-    static = {f"contact_faces.{key}": array for key, array in static.items()}
-    return PenaltyContact(static, particles, RADIUS)
-
-
-def _take(contact, node=NODES, active=None):
-    contact.take({
-        "contact_faces.position": node,
-        "contact_faces.velocity": np.zeros_like(node),
-        "contact_activity.active": np.ones(len(contact.corner)) if active is None else active,
-    })  # fmt: skip
-
-
-def _points(place, velocity=None, mass=1.0):
-    place = np.array(place, float)
-    count = len(place)
-    velocity = np.zeros_like(place) if velocity is None else velocity
-    area, modulus = np.full(count, 1.0), np.full(count, MODULUS)
-    masses, radius = np.full(count, mass), np.full(count, RADIUS)
-    return Points(
-        place,
-        velocity,
-        np.arange(count),
-        masses,
-        area,
-        modulus,
-        radius,
-        np.zeros((0, 3)),
-        np.zeros(0),
-        np.zeros(0, np.int64),
-    )
+from contact_points import FACES, MODULUS, NODES, RADIUS, THICK, contact_of, points_at, take
 
 
 @pytest.mark.parametrize(
@@ -73,8 +19,8 @@ def _points(place, velocity=None, mass=1.0):
     ],
 )
 def test_a_particle_is_pushed_from_the_nearest_point_of_the_surface(place, direction, depth):
-    contact, points = _contact(1), _points([place])
-    _take(contact)
+    contact, points = contact_of(1), points_at([place])
+    take(contact)
     contact.kick(points, 1.0)
     stiff = 1.0 / (2.0 * RADIUS / MODULUS + THICK / MODULUS)
     unit = np.array(direction) / np.linalg.norm(direction)
@@ -87,17 +33,17 @@ def test_reactions_have_the_sum_and_the_moment_of_the_forces():
     node = NODES + 0.1 * rng.standard_normal(NODES.shape)
     place = rng.uniform([0, 0, 0.2], [4, 2, 0.6], (40, 3))
     velocity = rng.standard_normal((40, 3))
-    contact, points = _contact(40, node, friction=0.4), _points(place, velocity.copy())
-    _take(contact, node)
+    contact, points = contact_of(40, node, friction=0.4), points_at(place, velocity.copy())
+    take(contact, node)
     contact.kick(points, 1e-2)
     force = (points.velocity - velocity) / 1e-2
     assert (force != 0.0).any(axis=1).sum() > 10
     size = np.abs(force).sum()
     assert np.abs(force.sum(axis=0) + contact.reaction.sum(axis=0)).max() < 1e-12 * size
     # Tangential forces act at the surface: a particle's own spin has no part in contact.
-    normal = _contact(40, node)
-    points = _points(place)
-    _take(normal, node)
+    normal = contact_of(40, node)
+    points = points_at(place)
+    take(normal, node)
     normal.kick(points, 1.0)
     moment = np.cross(place, points.velocity).sum(axis=0)
     moment += np.cross(node, normal.reaction).sum(axis=0)
@@ -106,126 +52,70 @@ def test_reactions_have_the_sum_and_the_moment_of_the_forces():
 
 def test_triangles_and_edges_in_a_plane_are_touched_like_squares():
     node = np.array([[0, 0, 0], [2, 0, 0], [2, 2, 0]], float)
-    triangle = _contact(1, node, np.array([[0, 1, 2, 2]]))
-    points = _points([(1.5, 0.5, 0.4)])
-    _take(triangle, node)
+    triangle = contact_of(1, node, np.array([[0, 1, 2, 2]]))
+    points = points_at([(1.5, 0.5, 0.4)])
+    take(triangle, node)
     triangle.kick(points, 1.0)
     np.testing.assert_allclose(points.velocity, [[0.0, 0.0, 0.1]], atol=1e-12)
     np.testing.assert_allclose(triangle.reaction[:, 2], -0.1 * np.array([0.25, 0.5, 0.25]))
     # An edge from +x to -x has its body below: (dz, -dx) points upwards.
     node = np.array([[2, 0, 0], [0, 0, 0]], float)
-    edge = _contact(2, node, np.array([[0, 1, 1, 0]]))
-    points = _points([(0.5, 0.7, 0.4), (0.5, 0.7, -0.3)])
+    edge = contact_of(2, node, np.array([[0, 1, 1, 0]]))
+    points = points_at([(0.5, 0.7, 0.4), (0.5, 0.7, -0.3)])
     points.place[:, 1] = 0.0
-    _take(edge, node)
+    take(edge, node)
     edge.kick(points, 1.0)
     np.testing.assert_allclose(points.velocity, [[0, 0, 0.1], [0, 0, 0.8]], atol=1e-12)
     np.testing.assert_allclose(edge.reaction[:, 2], [-0.225, -0.675])
 
 
-def _bounce(share):
-    """Largest energy of a particle pressed to a face of free nodes, in steps of a share of ours."""
-    node, face = NODES[[0, 1, 4, 3]], np.array([[0, 1, 2, 3]])
-    pressed, depth = 1.0, 1e-3
-    contact = _contact(1, node, face, mass=0.25)  # the bound is exact where node and particle match
-    node, speed = node.copy(), np.zeros((4, 3))
-    stiff = 1.0 / (2.0 * RADIUS / MODULUS + THICK / MODULUS)
-    points = _points([(1.0, 1.0, RADIUS - 0.2 - depth)])
-    pressed = stiff * 0.2  # N, at 0.2 m
-    _take(contact, node)
-    contact.kick(points, 0.0)
-    dt, largest = share * contact.stable_step(1e9), 0.0
-    for _ in range(400):
-        _take(contact, node)
-        contact.kick(points, dt)
-        points.velocity[0, 2] -= dt * pressed
-        speed = speed + dt * contact.reaction / 0.25
-        speed[:, 2] += dt * pressed
-        points.place[:] += dt * points.velocity
-        node = node + dt * speed
-        gap = points.place[0, 2] - node[:, 2].mean() - RADIUS
-        largest = max(largest, abs(gap + 0.2))
-        if largest > 0.1:
-            break
-    return largest / depth
-
-
-def test_the_predicted_step_of_contact_is_where_it_becomes_unstable():
-    assert _bounce(0.99) < 20.0
-    assert _bounce(1.01) > 50.0
-
-
-def _roll(share, mass):
-    """Energies of a sphere that sticks to a face, over the first, in steps of a share of ours."""
-    node, face = NODES[[0, 1, 4, 3]].copy(), np.array([[0, 1, 2, 3]])
-    contact = _contact(1, node, face, mass=mass, friction=1e6)
-    points, along, energies = _points([(1.0, 1.0, RADIUS - 1e-3)]), 0.0, []
-    points = points._replace(spin=np.zeros((1, 3)), inverse_moment=np.array([2.5 / RADIUS**2]))
-    _take(contact, node)
-    contact.kick(points, 0.0)
-    dt = share * contact.stable_step(1e9)
-    points.velocity[0] = 1e-6, 0.0, 0.0
-    for _ in range(400):
-        _take(contact, node)
-        contact.kick(points, dt)
-        points.velocity[0, 2] = 0.0  # held in height
-        along += dt * contact.reaction[:, 0].sum() / (4.0 * mass)
-        node[:, 0] += dt * along
-        points.place[0, 0] += dt * points.velocity[0, 0]
-        spin = (points.spin[0, 1] * RADIUS) ** 2 / 2.5
-        energies.append(points.velocity[0, 0] ** 2 + spin + 4.0 * mass * along**2)
-    return np.array(energies) / 1e-12
-
-
-@pytest.mark.parametrize("mass", [0.25, 1e9])  # of a node
-def test_the_predicted_step_is_where_a_sphere_that_sticks_becomes_unstable(mass):
-    energies = _roll(0.95, mass)
-    # Velocities of a step's middle exceed those of the motion by 1/√(1 - (ω dt/2)²).
-    assert energies.max() < 1.0 / (1.0 - 0.95**2)
-    assert energies[200:].max() < 1.01 * energies[:200].max()
-    assert _roll(1.01, mass).max() > 1e3
-
-
-def test_a_particle_near_a_face_limits_the_step_before_it_touches():
-    contact = _contact(2)
-    for height, limits in ((1.2, False), (0.9, True)):
-        _take(contact)
-        contact.kick(_points([(1.0, 1.0, height), (9.0, 9.0, 9.0)]), 1e-3)
-        assert np.isfinite(contact.stable_step(1.0)) == limits
+def test_of_two_faces_at_the_same_distance_the_first_is_touched():
+    place, kept = [(2.0, 1.0, 0.3)], []
+    for first in (-1, 0, 1):
+        contact = contact_of(1, friction=0.3)
+        take(contact)
+        contact.kick(points_at([(1.9, 1.0, 0.3)]), 1e-3)
+        contact.near.last[:] = first
+        contact.kick(points_at(place, np.ones((1, 3))), 1e-3)
+        kept.append([contact.near.last.copy(), contact.reaction.copy(), contact.slip.copy()])
+    assert kept[0][0] == 0
+    for others in kept[1:]:
+        for array, same in zip(others, kept[0], strict=True):
+            np.testing.assert_array_equal(array, same)
 
 
 def test_an_eroded_face_is_not_touched():
-    contact, points = _contact(1), _points([(1.0, 1.0, 0.4)])
-    _take(contact, active=np.array([0.0, 1.0, 1.0]))
+    contact, points = contact_of(1), points_at([(1.0, 1.0, 0.4)])
+    take(contact, active=np.array([0.0, 1.0, 1.0]))
     contact.kick(points, 1.0)
     assert not points.velocity.any()
     assert "faces that erosion opens are not touched" in contact.warnings()["erosion"]
-    far = _contact(1)
-    _take(far, active=np.array([0.0, 1.0, 1.0]))
-    far.kick(_points([(9.0, 9.0, 9.0)]), 1.0)
+    far = contact_of(1)
+    take(far, active=np.array([0.0, 1.0, 1.0]))
+    far.kick(points_at([(9.0, 9.0, 9.0)]), 1.0)
     assert not far.warnings()
 
 
 def test_a_spring_whose_face_erodes_is_let_go_and_its_energy_is_lost():
-    contact, points = _contact(1, friction=9.0), _points([(1.0, 1.0, 0.3)], np.ones((1, 3)))
+    contact, points = contact_of(1, friction=9.0), points_at([(1.0, 1.0, 0.3)], np.ones((1, 3)))
     for _ in range(2):
-        _take(contact)
+        take(contact)
         contact.kick(points, 1e-2)
     stiff = 1.0 / (2.0 * RADIUS / MODULUS + THICK / MODULUS)
     held, before = 0.5 * stiff * (contact.slip[0] ** 2).sum(), contact.numbers.dissipated
     assert held > 0.0
-    _take(contact, active=np.zeros(3))
+    take(contact, active=np.zeros(3))
     contact.kick(points, 1e-2)
     assert not contact.slip.any() and not contact.held.any()
     assert contact.numbers.dissipated - before == pytest.approx(held)
 
 
 def test_friction_holds_below_its_limit_and_slides_at_it():
-    contact, points = _contact(1, friction=0.5), _points([(1.0, 1.0, 0.3)])
+    contact, points = contact_of(1, friction=0.5), points_at([(1.0, 1.0, 0.3)])
     stiff = 1.0 / (2.0 * RADIUS / MODULUS + THICK / MODULUS)
     push, dt, done = stiff * 0.2, 1e-3, 0.0
     for step in range(2000):
-        _take(contact)
+        take(contact)
         points.velocity[:] = (1.0, 0.0, 0.0)  # drawn along
         points.place[:] = (1.0 + step * dt * 1e-3, 1.0, 0.3)
         contact.kick(points, dt)
@@ -241,24 +131,24 @@ def test_friction_holds_below_its_limit_and_slides_at_it():
 
 
 def test_deep_penetration_is_warned_of():
-    contact = _contact(1)
-    _take(contact)
-    contact.kick(_points([(1.0, 1.0, 0.1)]), 1e-3)
+    contact = contact_of(1)
+    take(contact)
+    contact.kick(points_at([(1.0, 1.0, 0.1)]), 1e-3)
     assert not contact.warnings()
-    contact.kick(_points([(1.0, 1.0, -0.2)]), 1e-3)
+    contact.kick(points_at([(1.0, 1.0, -0.2)]), 1e-3)
     assert "one went 0.7 m deep, and beyond 1 m" in contact.warnings()["contact"]
 
 
 def _fall(side, step):
     """Strike a face from above or below at 100 m/s; steps [s] as told or as predicted."""
     node, face = NODES[[0, 1, 4, 3]], np.array([[0, 1, 2, 3]])
-    contact = _contact(1, node, face if side > 0.0 else face[:, ::-1], mass=1e9)
-    points = _points([(1.0, 1.0, side * 4.0)], np.array([[0.0, 0.0, -side * 100.0]]), mass=0.1)
+    contact = contact_of(1, node, face if side > 0.0 else face[:, ::-1], mass=1e9)
+    points = points_at([(1.0, 1.0, side * 4.0)], np.array([[0.0, 0.0, -side * 100.0]]), mass=0.1)
     contact.start(points.velocity)
     points.modulus[:] = 1e6  # Pa
-    contact.faces[0][:] = 1e6
+    contact.faces[0][:] = 1e6  # longitudinal
     for _ in range(200):
-        _take(contact, node)
+        take(contact, node)
         dt = step or min(0.1, contact.stable_step(1.0))
         contact.kick(points, dt)
         points.place[:] += dt * points.velocity
@@ -275,20 +165,20 @@ def test_no_particle_passes_through_a_face_in_predicted_steps(side):
 
 
 def test_a_particle_that_has_passed_through_a_face_is_warned_of():
-    contact = _contact(1)
-    _take(contact)
-    contact.kick(_points([(1.0, 1.0, 0.7)]), 1e-3)
+    contact = contact_of(1)
+    take(contact)
+    contact.kick(points_at([(1.0, 1.0, 0.7)]), 1e-3)
     assert not contact.warnings()
-    contact.kick(_points([(1.0, 1.0, -0.7)]), 1e-3)
+    contact.kick(points_at([(1.0, 1.0, -0.7)]), 1e-3)
     assert "one went 1.2 m deep, and beyond 1 m" in contact.warnings()["contact"]
 
 
 def test_a_run_that_begins_from_another_keeps_history_and_counts_from_0():
-    contact, points = _contact(1, friction=0.1), _points([(1.0, 1.0, -0.3)], np.ones((1, 3)))
+    contact, points = contact_of(1, friction=0.1), points_at([(1.0, 1.0, -0.3)], np.ones((1, 3)))
     for _ in range(2):
-        _take(contact)
+        take(contact)
         contact.kick(points, 1e-1)
-    saved, other = contact.save(), _contact(1)
+    saved, other = contact.save(), contact_of(1)
     assert contact.warnings() and contact.numbers.dissipated > 0.0
     other.load(other.beginning(saved))
     numbers = other.numbers
@@ -298,14 +188,14 @@ def test_a_run_that_begins_from_another_keeps_history_and_counts_from_0():
 
 
 def test_a_state_without_this_contact_begins_without_history():
-    contact, points = _contact(1, friction=0.5), _points([(1.0, 1.0, 0.3)], np.ones((1, 3)))
-    _take(contact)
+    contact, points = contact_of(1, friction=0.5), points_at([(1.0, 1.0, 0.3)], np.ones((1, 3)))
+    take(contact)
     contact.kick(points, 1e-2)
-    coarse = _contact(1, NODES[:4], FACES[:1])
+    coarse = contact_of(1, NODES[:4], FACES[:1])
     for other, state in (
-        (_contact(1), {}),
+        (contact_of(1), {}),
         (coarse, contact.save()),
-        (_contact(2), contact.save()),
+        (contact_of(2), contact.save()),
     ):
         start = other.save()
         other.load(other.beginning(state))
@@ -314,10 +204,10 @@ def test_a_state_without_this_contact_begins_without_history():
 
 
 def test_a_particle_at_rest_under_contact_has_no_kinetic_energy():
-    contact, points = _contact(1, friction=0.5), _points([(1.0, 1.0, 0.3)])
+    contact, points = contact_of(1, friction=0.5), points_at([(1.0, 1.0, 0.3)])
     for fixed, moves in ((7, [0, 0, 0]), (4, [1, 0, 0])):
         points.velocity[:] = 0.0 if fixed == 7 else (1.0, 0.0, 0.0)
-        _take(contact)
+        take(contact)
         contact.kick(points._replace(fixed=np.array([fixed])), 1e-2)
         assert contact.reaction[:, 2].sum() < 0.0
         assert (contact.kicked[0] == 0.0).tolist() == (np.array(moves) == 0).tolist()
@@ -326,11 +216,11 @@ def test_a_particle_at_rest_under_contact_has_no_kinetic_energy():
 
 
 def test_what_is_saved_comes_back():
-    contact, points = _contact(1, friction=0.5), _points([(1.0, 1.0, 0.3)], np.ones((1, 3)))
-    _take(contact)
+    contact, points = contact_of(1, friction=0.5), points_at([(1.0, 1.0, 0.3)], np.ones((1, 3)))
+    take(contact)
     contact.kick(points, 1e-2)
     saved = {key: array.copy() for key, array in contact.save().items()}
-    other = _contact(1, friction=0.5)
+    other = contact_of(1, friction=0.5)
     other.load(saved)
     for key, array in other.save().items():
         np.testing.assert_array_equal(array, saved[key])
