@@ -138,6 +138,7 @@ CONTACT_FACES = Port(
         Field("friction", (), "1"),  # of each face, Coulomb's coefficient
         Field("stiffness", (), "1"),  # of each face, scale of the penalty stiffness
         Field("safety", (), "1"),  # one row: share of the predicted stable step
+        Field("points", (), "1"),  # one row: points across a particle that bear its force
     ),
 )
 PLANAR_CONTACT_FACES = replace(CONTACT_FACES, static=(*CONTACT_FACES.static, DIMENSIONS))

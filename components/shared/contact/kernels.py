@@ -14,7 +14,14 @@ from quintet.components.shared.contact.laws import (
     in_series,
     stretch_anew,
 )
-from quintet.components.shared.contact.search import Near, gap_of, nearest, places_of_listed
+from quintet.components.shared.contact.search import (
+    Near,
+    gap_of,
+    nearest,
+    places_of_listed,
+    spread_out,
+    write_shares,
+)
 from quintet.components.shared.geometry.face_kernels import Array, Whole
 from quintet.components.shared.numba_options import EXACT, INNER
 
@@ -31,6 +38,7 @@ class Surface(NamedTuple):
     mass: Array  # (k,) kg
     position: Array  # (k, 3) m
     velocity: Array  # (k, 3) m/s, mean of the last step
+    spread: Whole  # (2,) points along both directions over which a particle's force is spread
 
 
 class Points(NamedTuple):
@@ -98,7 +106,6 @@ def touch(
 
     Parameters
     ----------
-    points, surface, near
     last : float, s
         Step before, in which tangential springs were stretched.
     dt : float, s
@@ -107,7 +114,8 @@ def touch(
         Added to.
     """
     count, listed = near.row.shape[0], places_of_listed(near, surface.corner, surface.position)
-    face, weight = np.full(count, -1), np.empty((count, 4))
+    face, several = np.full(count, -1), 4 * surface.spread[0] * surface.spread[1]
+    nodes, weight = np.zeros((count, several), np.int64), np.zeros((count, several))
     room, n, slid, at = np.empty((3, 3)), np.empty(3), np.empty(3), np.empty(3)
     energy, dissipated, half_kick, limit = 0.0, 0.0, 0.0, math.inf
     of_points, impact, deepest, spread = 0.0, 0.0, 0.0, 0.0
@@ -125,26 +133,28 @@ def touch(
             dissipated += let_go(loads, number)
             continue
         face[q] = near.listed[f]
-        write_weights(xi, eta, weight, q)
-        closing = write_slid(points, i, surface, face[q], weight, q, n, last, slid)
+        write_shares(surface.corner[face[q]], xi, eta, 1.0, nodes[q], weight[q], 0)
+        if several > 4:
+            gap = mean_gap(at, f, near, q, listed, surface, radius, gap, room, n, nodes, weight)
+        closing = write_slid(points, i, surface, nodes[q], weight[q], n, last, slid)
         if closing > 0.0:
             limit = min(limit, 0.5 * (max(gap, 0.0) + radius) / closing)
         push, stored, side, most, most_aside = law_of(points, i, surface, face[q], gap, closing)
         impact = max(impact, most / points.mass[i])
         of_points = max(of_points, most_aside, most / points.mass[i])
-        for c in range(4):
-            loads.stiffness[surface.corner[face[q], c]] += weight[q, c] * most
+        for c in range(several):
+            loads.stiffness[nodes[q, c]] += weight[q, c] * most
         if gap >= 0.0:
             dissipated += let_go(loads, number)
             continue
         turn_over_face(points, i, n, last, radius + gap, slid)
         held, lost = rub(points, loads, number, slid, n, side, surface.friction[face[q]] * push)
         energy, dissipated, deepest = energy + stored + held, dissipated + lost, max(deepest, -gap)
-        half_kick += apply(points, i, surface, face[q], weight, q, n, push, side, dt, loads)
+        half_kick += apply(points, i, nodes[q], weight[q], n, push, side, dt, loads)
         if points.spin.shape[0]:
             half_kick += twist(points, i, loads.slip, number, n, dt * side * (radius + gap))
             spread = max(spread, math.sqrt(-radius * gap) / surface.thickness[face[q]])
-    held_by = of_what_holds(face, weight, surface, loads.stiffness)
+    held_by = of_what_holds(nodes, weight, surface.mass, loads.stiffness)
     return Sums(energy, dissipated, half_kick, of_points, held_by, impact, deepest, spread, limit)
 
 
@@ -159,20 +169,32 @@ def let_go(loads, number):  # type: ignore[no-untyped-def]
 
 
 @njit(**INNER)
-def write_weights(xi, eta, weight, q):  # type: ignore[no-untyped-def]
-    """Write the shape functions (4,) of a face at ξ and η into row q."""
-    weight[q, 0], weight[q, 1] = 0.25 * (1.0 - xi) * (1.0 - eta), 0.25 * (1.0 + xi) * (1.0 - eta)
-    weight[q, 2], weight[q, 3] = 0.25 * (1.0 + xi) * (1.0 + eta), 0.25 * (1.0 - xi) * (1.0 + eta)
+def mean_gap(p, f, near, q, listed, surface, radius, gap, room, n, nodes, weight):  # type: ignore[no-untyped-def]
+    """Spread a particle over the faces that it covers; return the mean gap [m] over them.
+
+    One that covers what is no face stays at its nearest point.
+    """
+    others, shares = np.empty_like(nodes[q]), np.empty_like(weight[q])
+    if not spread_out(
+        p, f, near, q, listed, surface.corner, surface.spread, radius, room, n, others, shares
+    ):  # fmt: skip
+        return gap
+    gap = -radius
+    for c in range(others.shape[0]):
+        nodes[q, c], weight[q, c] = others[c], shares[c]
+        for d in range(3):
+            gap += shares[c] * n[d] * (p[d] - surface.position[others[c], d])
+    return gap
 
 
 @njit(**INNER)
-def write_slid(points, i, surface, f, weight, q, n, last, slid):  # type: ignore[no-untyped-def]
-    """Write by how much [m] a particle moved over a face in the last step; closing velocity."""
+def write_slid(points, i, surface, nodes, weight, n, last, slid):  # type: ignore[no-untyped-def]
+    """Write by how much [m] a particle moved over nodes in the last step; closing velocity."""
     closing = 0.0
     for d in range(3):
         moved = 0.0
-        for c in range(4):
-            moved += weight[q, c] * surface.velocity[surface.corner[f, c], d]
+        for c in range(nodes.shape[0]):
+            moved += weight[c] * surface.velocity[nodes[c], d]
         slid[d] = last * (points.velocity[i, d] - moved)
         closing -= n[d] * (points.velocity[i, d] - moved)
     return closing
@@ -233,13 +255,13 @@ def rub(points, loads, number, slid, n, side, limit):  # type: ignore[no-untyped
 
 
 @njit(**INNER)
-def apply(points, i, surface, f, weight, q, n, push, side, dt, loads):  # type: ignore[no-untyped-def]
+def apply(points, i, nodes, weight, n, push, side, dt, loads):  # type: ignore[no-untyped-def]
     """Apply the force on a particle, and its reaction on nodes; half of its kinetic energy [J]."""
     number, half_kick = points.identity[i], 0.0
     for d in range(3):
         force = push * n[d] - side * loads.slip[number, d]
-        for c in range(4):
-            loads.force[surface.corner[f, c], d] -= weight[q, c] * force
+        for c in range(nodes.shape[0]):
+            loads.force[nodes[c], d] -= weight[c] * force
         if points.fixed.shape[0] and (points.fixed[i] >> d) & 1:
             continue
         kicked = dt * force / points.mass[i]
@@ -263,7 +285,7 @@ def twist(points, i, slip, number, n, turn):  # type: ignore[no-untyped-def]
 
 
 @njit(**INNER)
-def of_what_holds(face, weight, surface, stiffness):  # type: ignore[no-untyped-def]
+def of_what_holds(nodes, weight, mass, stiffness):  # type: ignore[no-untyped-def]
     """Largest Σ w R/m [1/s2] of the nodes that hold a particle, with R = Σ w k of each.
 
     With k/m of the particle it bounds ω² of contact: rows of |M⁻¹K| times the vector k/m of
@@ -271,11 +293,9 @@ def of_what_holds(face, weight, surface, stiffness):  # type: ignore[no-untyped-
     1942). It is exact where all of them are alike.
     """
     most = 0.0
-    for q in range(face.shape[0]):
-        if face[q] >= 0:
-            holds = 0.0
-            for c in range(4):
-                node = surface.corner[face[q], c]
-                holds += weight[q, c] * stiffness[node] / surface.mass[node]
-            most = max(most, holds)
+    for q in range(nodes.shape[0]):
+        holds = 0.0
+        for c in range(nodes.shape[1]):
+            holds += weight[q, c] * stiffness[nodes[q, c]] / mass[nodes[q, c]]
+        most = max(most, holds)
     return most

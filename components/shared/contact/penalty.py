@@ -71,6 +71,9 @@ class PenaltyContact:
         modulus = plane_modulus(*moduli) if spheres else longitudinal_modulus(*moduli)
         layer = of["thickness"], of["friction"], of["stiffness"], of["mass"]
         self.faces = modulus, tangential_modulus(*moduli), *layer
+        is_planar = bool((self.corner[:, 0] == self.corner[:, 3]).all())
+        points = 1 if spheres else int(of["points"].max())
+        self.spread = np.array([points, 1 if is_planar else points])
         self.safety, self.step_of_faces = float(of["safety"].min()), float(of["step"].min())
         nodes = len(self.mass)
         self.active = np.ones(len(self.corner))
@@ -114,7 +117,7 @@ class PenaltyContact:
         moving = (self.position - self.before) / last if last else np.zeros((nodes, 3))
         near, apart = self._list(points, moving, last)
         self.reaction, stiffness = np.zeros((nodes, 3)), np.zeros(nodes)
-        surface = Surface(self.corner, *self.faces, self.position, moving)
+        surface = Surface(self.corner, *self.faces, self.position, moving, self.spread)
         loads = Loads(self.reaction, stiffness, self.slip, self.held, self.kicked)
         sums = touch(points, surface, near, last, dt, loads)
         self.before, numbers.last = self.position.copy(), dt

@@ -126,7 +126,7 @@ def nearest(p, near, q, listed, reach, room):  # type: ignore[no-untyped-def]
     """Nearest of the faces of row q within a reach, -1 if there is none; ξ and η.
 
     That of the last step is tried first: it usually is the nearest, and the boxes of the others are
-    further away. Of equally near faces the first one counts, whichever was tried first.
+    further away.
     """
     first, least = near.last[q], math.inf
     if first < 0:
@@ -134,7 +134,19 @@ def nearest(p, near, q, listed, reach, room):  # type: ignore[no-untyped-def]
             away = away_from(p, listed, near.face[at])
             if away < least:
                 first, least = near.face[at], away
-    best, face = reach * reach, -1
+    face, xi, eta, _ = nearest_from(p, first, near, q, listed, reach * reach, room)
+    near.last[q] = first if face < 0 else face
+    return face, xi, eta
+
+
+@njit(**INNER)
+def nearest_from(p, first, near, q, listed, reach, room):  # type: ignore[no-untyped-def]
+    """Nearest of the faces of row q, of which one is tried first; ξ, η and the squared distance.
+
+    Faces as far as a squared `reach` [m2] or further do not count; -1 if there are no others. Of
+    equally near faces the first one counts, whichever was tried first.
+    """
+    best, face = reach, -1
     xi, eta, d2 = foot(p, listed.x[first], room)
     if d2 < best:
         best, face = d2, first
@@ -144,8 +156,7 @@ def nearest(p, near, q, listed, reach, room):  # type: ignore[no-untyped-def]
             a, b, d2 = foot(p, listed.x[f], room)
             if d2 < best or (d2 == best and f < face):
                 best, face, xi, eta = d2, f, a, b
-    near.last[q] = first if face < 0 else face
-    return face, xi, eta
+    return face, xi, eta, best
 
 
 @njit(**INNER)
@@ -184,3 +195,63 @@ def gap_of(p, x, xi, eta, radius, room, n):  # type: ignore[no-untyped-def]
         return distance - radius
     beside = math.sqrt(max(square - above * above, 0.0))
     return above - radius if beside <= ON * radius else math.inf
+
+
+@njit(**INNER)
+def write_shares(corner, xi, eta, share, nodes, weight, at):  # type: ignore[no-untyped-def]
+    """Write the nodes (4,) of a face and shares of its shape functions at ξ and η, from `at` on."""
+    for c in range(4):
+        nodes[at + c] = corner[c]
+    weight[at], weight[at + 1] = (1.0 - xi) * (1.0 - eta), (1.0 + xi) * (1.0 - eta)
+    weight[at + 2], weight[at + 3] = (1.0 + xi) * (1.0 + eta), (1.0 - xi) * (1.0 + eta)
+    for c in range(4):
+        weight[at + c] *= 0.25 * share
+
+
+@njit(**INNER)
+def spread_out(p, face, near, q, listed, corner, spread, radius, room, n, nodes, weight):  # type: ignore[no-untyped-def]
+    """Write nodes and weights of the points across a particle that lies on a face.
+
+    The points lie in the plane of its normal, in rows along the face's first side and across it;
+    of edges only along it. Each has the nearest face of its own.
+
+    Parameters
+    ----------
+    spread : two int
+        Points along both directions.
+
+    Returns
+    -------
+    bool
+        Whether all points lie on faces; what was written is of no use otherwise.
+    """
+    tangent, side, point = np.empty(3), np.empty(3), np.empty(3)
+    along, square, at = 0.0, 0.0, 0
+    for d in range(3):
+        tangent[d] = listed.x[face, 1, d] - listed.x[face, 0, d]
+        along += tangent[d] * n[d]
+    for d in range(3):
+        tangent[d] -= along * n[d]
+        square += tangent[d] * tangent[d]
+    for d in range(3):
+        tangent[d] /= math.sqrt(square)
+    for d in range(3):
+        a, b = (d + 1) % 3, (d + 2) % 3
+        side[d] = n[a] * tangent[b] - n[b] * tangent[a]
+    for i in range(spread[0]):
+        for j in range(spread[1]):
+            x, y = (2 * i + 1) / spread[0] - 1.0, (2 * j + 1) / spread[1] - 1.0
+            for d in range(3):
+                point[d] = p[d] + radius * (x * tangent[d] + y * side[d])
+            f, xi, eta, _ = nearest_from(point, face, near, q, listed, math.inf, room)
+            place_on(listed.x[f], xi, eta, room)
+            above, away = 0.0, 0.0
+            for d in range(3):
+                above += (point[d] - room[0, d]) * n[d]
+                away += (point[d] - room[0, d]) ** 2
+            if away - above * above > (ON * radius) ** 2:
+                return False
+            share = 1.0 / (spread[0] * spread[1])
+            write_shares(corner[near.listed[f]], xi, eta, share, nodes, weight, at)
+            at += 4
+    return True

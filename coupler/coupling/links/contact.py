@@ -7,9 +7,10 @@ the coefficients; it computes nothing but the closing of faces.
 """
 
 from collections.abc import Mapping
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import numpy as np
+from pydantic import Field
 
 from quintet.coupler.coupling.link import Binding, Demands, Ends, Link, Mapped, Ports, Transfer
 from quintet.coupler.coupling.links.keys import Between, is_stand_in, with_keys
@@ -54,12 +55,17 @@ class ContactKeys:
         of particles and one layer of elements under the same pressure, and spheres follow Hertz.
     safety : 1
         Share of the predicted stable step of contact that is used.
+    points_across : 1
+        Points across a particle, along both sides, that bear its force on the faces below them.
+        With 3 flat bodies press alike on faces that the spacing does not divide; it takes more
+        time. Spheres touch at one point.
     """
 
     between: Between
     friction: NotNegative = 0.0
     stiffness: Positive = 1.0
     safety: Positive = 0.9
+    points_across: Annotated[int, Field(ge=1, le=4)] = 1
 
 
 class Coefficients(NamedTuple):
@@ -68,12 +74,13 @@ class Coefficients(NamedTuple):
     friction: float
     stiffness: float
     safety: float
+    points: int
 
 
 @with_keys(ContactKeys)
 def make(name: str, keys: ContactKeys, ports: Mapping[str, Ports]) -> Link:
     """Make a link with its coefficients."""
-    coefficients = Coefficients(keys.friction, keys.stiffness, keys.safety)
+    coefficients = Coefficients(keys.friction, keys.stiffness, keys.safety, keys.points_across)
     return join(name, keys.between, ports, coefficients)
 
 
@@ -153,6 +160,7 @@ class Contact(Link):
             "friction": np.full(count, of.friction),
             "stiffness": np.full(count, of.stiffness),
             "safety": np.array([of.safety]),
+            "points": np.array([float(of.points)]),
             **{key: mesh[key] for key in (*OF_NODES, *OF_FACES, "step")},
         }
         if "dimensions" in mesh:

@@ -15,7 +15,7 @@ FACES = np.array([[0, 1, 4, 3], [1, 2, 5, 4], [2, 6, 7, 5]])
 
 
 def contact_of(
-    particles, node=NODES, face=FACES, mass=1.0, friction=0.0, step=1e9, spheres=False
+    particles, node=NODES, face=FACES, mass=1.0, friction=0.0, step=1e9, spheres=False, points=1.0
 ):  # fmt: skip
     count = len(face)
     static = {
@@ -27,6 +27,7 @@ def contact_of(
         "friction": np.full(count, friction),
         "stiffness": np.ones(count),
         "safety": np.ones(1),
+        "points": np.array([points]),
         "step": np.array([step]),
     }
     static = {f"contact_faces.{key}": array for key, array in static.items()}

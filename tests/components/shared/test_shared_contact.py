@@ -50,6 +50,26 @@ def test_reactions_have_the_sum_and_the_moment_of_the_forces():
     assert np.abs(moment).max() < 1e-12 * np.abs(points.velocity).sum()
 
 
+def test_a_particle_that_is_spread_over_faces_keeps_force_and_moment():
+    place = [(1.7, 1.0, 0.4)]  # its right third lies on the second face
+    contact, points = contact_of(1, points=3), points_at(place)
+    take(contact)
+    contact.kick(points, 1.0)
+    assert points.velocity[0, 2] == pytest.approx(0.1)
+    assert contact.reaction[[2, 5], 2].sum() == pytest.approx(-0.1 * (1.7 + 1 / 3 - 2.0) / 2.0 / 3)
+    moment = np.cross(np.array(place), points.velocity) + np.cross(NODES, contact.reaction).sum(0)
+    np.testing.assert_allclose(moment, 0.0, atol=1e-15)
+    assert contact.reaction.sum(axis=0)[2] == pytest.approx(-points.velocity[0, 2])
+    # One that covers what is no face is not spread.
+    reactions = []
+    for count in (1.0, 3.0):
+        contact, points = contact_of(1, points=count), points_at([(1.0, 0.2, 0.4)])
+        take(contact)
+        contact.kick(points, 1.0)
+        reactions.append(contact.reaction)
+    np.testing.assert_array_equal(*reactions)
+
+
 def test_triangles_and_edges_in_a_plane_are_touched_like_squares():
     node = np.array([[0, 0, 0], [2, 0, 0], [2, 2, 0]], float)
     triangle = contact_of(1, node, np.array([[0, 1, 2, 2]]))
