@@ -17,6 +17,7 @@ from quintet.coupler.scene.foreign_code import trusted_params
 from quintet.coupler.scene.read import library, locate, parse
 from quintet.coupler.scene.scene import ComponentKeys, GroupSettings, SceneFile
 from quintet.coupler.scene.tables import SceneTables
+from quintet.coupler.study.peers.table import peers_of
 from quintet.interfaces.errors import QuintetError
 from quintet.interfaces.keys import keys
 from quintet.interfaces.manifest import known_kinds
@@ -56,6 +57,7 @@ def _completer(
         ("describe", "subject"): lambda **_: [subject for subject, _ in subjects()],
         ("join", "name"): lambda parsed_args, **_: list(_components(parsed_args)),
         ("materials", "name"): lambda **_: sorted(materials()),
+        ("study", "beside"): peers,
     }
     by_name: dict[str, Callable[..., Words]] = {
         "scene": scenes,
@@ -73,6 +75,15 @@ def scenes(prefix: str, **_: Any) -> Words:
     """Scenes of the library, and files."""
     files = argcomplete.completers.FilesCompleter(("toml",), directories=True)
     return [*library(), *files(prefix)]
+
+
+def peers(parsed_args: argparse.Namespace, **_: Any) -> Words:
+    """Other programs that the scene on the line has inputs for."""
+    scene = getattr(parsed_args, "scene", None)
+    try:
+        return list(peers_of(locate(scene).parent)) if scene else []
+    except QuintetError:
+        return []
 
 
 def swaps(prefix: str, parsed_args: argparse.Namespace, **_: Any) -> Words:

@@ -48,7 +48,7 @@ EXAMPLES = {
     ),
     "study": (
         "quintet study two_springs --json study.json",
-        "quintet study dam_break_front --error 0.05 --run",
+        "quintet study dam_break_front --beside lammps",
     ),
     "stability": (
         "quintet stability elastic_gate --preset quick",

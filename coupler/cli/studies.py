@@ -15,6 +15,10 @@ from quintet.coupler.cli.options import (
 KEEP = "reuse completed runs in DIR, of the same scene on the same machine"
 ERROR = "recommend the cheapest setting of this relative error, as in 0.05"
 RUN = "with --error: run the recommended setting if it is an extrapolated one"
+BESIDE = (
+    "also run another program on the same problem, in turns with the refinements; its inputs are "
+    "in peers/NAME beside the scene; may be repeated"
+)
 STUDY_ALL = "the quick refinements of all scenes that come with quintet; goes on where it was ended"
 MINUTES = "with --all: start no run that would end later (default: 60)"
 STABILITY_ALL = "the limits of all scenes that come with quintet; goes on where it was ended"
@@ -55,6 +59,7 @@ def add_commands(command: Command) -> None:
     study.add_argument("--keep", action="store_true", help=KEEP)
     study.add_argument("--error", type=float, metavar="E", help=ERROR)
     study.add_argument("--run", action="store_true", help=RUN)
+    study.add_argument("--beside", action="append", default=[], metavar="NAME", help=BESIDE)
     study.add_argument("--all", action="store_true", help=STUDY_ALL)
     study.add_argument("--minutes", type=float, metavar="M", help=MINUTES)
     study.add_argument("--readme", type=Path, metavar="FILE", help=README)

@@ -231,8 +231,31 @@ def reference_value(expectation: Expectation, folder: Path) -> float:
 
 def evaluate(expectation: Expectation, recording: "Recording", folder: Path) -> Outcome:
     """Compare a run with an expectation; a run that ended too early does not meet it."""
+    return _outcome(expectation, *_value(expectation, recording, folder), folder)
+
+
+def evaluate_curve(expectation: Expectation, recorded: Curve, folder: Path) -> Outcome:
+    """Compare the output of another program with an expectation, as that of a run.
+
+    Parameters
+    ----------
+    expectation : Expectation
+    recorded : Curve
+        Times (m,) s and values (m,) in the unit of the expectation's field, without its offset and
+        scale.
+    folder : Path
+        Of the scene, where the reference curves are.
+    """
+    whole = Curve(recorded.times, expectation.scale * (recorded.values + expectation.offset))
+    end = float(whole.times[-1])
+    return _outcome(expectation, *value_of(expectation, whole, end, folder), folder)
+
+
+def _outcome(
+    expectation: Expectation, value: float, not_reached: float | None, folder: Path
+) -> Outcome:
+    """Outcome of a measured value, nan if there is none."""
     reference = reference_value(expectation, folder)
-    value, not_reached = _value(expectation, recording, folder)
     return Outcome(
         expectation.name,
         value if math.isfinite(value) else None,

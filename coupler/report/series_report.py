@@ -11,6 +11,7 @@ from quintet.coupler.report import (
     calibration_report,
     ensemble_report,
     page,
+    peer_tables,
     stability_tables,
     study_tables,
     sweep_report,
@@ -104,6 +105,10 @@ def _study(content: Content) -> Iterator[Part]:
     if content["shares"]:
         table = _plain(study_tables.shares(content["shares"]))
         yield Part("Where the error comes from", table=table)
+    for peer in content.get("peers", ()):
+        words = peer_tables.beside_words(peer, content["rows"])
+        table = _plain(peer_tables.beside_table(peer, content["rows"]))
+        yield Part(f"Beside {peer_tables.title_of(peer)}", words, table)
 
 
 def _ensemble(content: Content) -> Iterator[Part]:

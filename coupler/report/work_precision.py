@@ -18,6 +18,7 @@ COLOURS = {
     "spacing": "tab:blue",
     "model": "tab:purple",
 }
+PEERS = ("tab:red", "tab:brown", "tab:olive", "tab:cyan")  # other programs, in turn
 RIGHT = 0.65  # of the logarithmic axis, from where labels stand left of their points
 SMALLEST_SLOPE = 0.02  # of a line to which a triangle is drawn
 
@@ -40,7 +41,8 @@ def draw(summary: Row, out: Path) -> Path | None:
     """Draw error over processor time, both on a logarithmic scale, a panel for each expectation.
 
     Filled points meet all expectations; a line joins those that no other refinement beats; a
-    triangle has the slope of the errors of each kind over the time.
+    triangle has the slope of the errors of each kind over the time. Squares are runs of other
+    programs.
 
     Returns `out`, or None where no refinement has an error to be drawn, or nothing can draw.
     """
@@ -53,6 +55,8 @@ def draw(summary: Row, out: Path) -> Path | None:
     for panel, name in zip(panels, names, strict=True):
         rows = [row for row in done if row["errors"].get(name)]
         _draw(panel, name, rows, summary["kinds"])
+        for number, peer in enumerate(summary.get("peers", ())):
+            _draw_peer(panel, name, peer, PEERS[number % len(PEERS)])
         for handle, label in zip(*panel.get_legend_handles_labels(), strict=True):
             labelled.setdefault(label, handle)
     columns = min(len(labelled), 3 if len(names) == 1 else 5)
@@ -89,6 +93,21 @@ def _draw(panel: Any, name: str, rows: Sequence[Row], kinds: Row) -> None:
     panel.set_title("\n".join(lines), fontsize=9)
     panel.set(xlabel="processor time [s]", ylabel=f"error [{rows[-1]['units'][name]}]")
     panel.grid(which="both", alpha=0.3)
+
+
+def _draw_peer(panel: Any, name: str, peer: Row, colour: str) -> None:
+    """Draw the runs of another program: squares, filled where all it is measured by is met."""
+    rows = [row for row in peer["rows"] if row["errors"].get(name) and row["cpu"] > 0.0]
+    if not rows:
+        return
+    costs, errors = [row["cpu"] for row in rows], [row["errors"][name] for row in rows]
+    label = f"{peer['program']} {peer['version']}".strip()
+    panel.plot(costs, errors, color=colour, linewidth=0.8, linestyle=":", zorder=1)
+    for row, cost, error in zip(rows, costs, errors, strict=True):
+        style = {"markersize": 6, "color": colour, "fillstyle": "full" if row["met"] else "none"}
+        panel.plot(cost, error, "s", label=label, **style)
+        place = {"xytext": (-5, 4), "ha": "right", "textcoords": "offset points"}
+        panel.annotate(row["label"], (cost, error), fontsize=7, color=colour, **place)
 
 
 def _points(

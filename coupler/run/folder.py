@@ -64,10 +64,10 @@ class RunFolder:
     marker: Marker
     replaces: bool = False  # a former run
 
-    def check_runs(self, names: Iterable[str]) -> None:
+    def check_runs(self, names: Iterable[str], kind: str = "run") -> None:
         """Refuse to begin where a run of a series would go into a folder that is not a run's."""
         for name in names:
-            _former(self.path / name, "run", True)
+            _former(self.path / name, kind, True)
 
     def undo(self) -> None:
         """Leave the folder as it was found: nothing was started."""
@@ -87,7 +87,7 @@ def begin(
 
     Parameters
     ----------
-    kind : {"run", "study", "stability"}
+    kind : {"run", "study", "stability", "peer"}
     name : str
         Of the folder in ``runs`` where none is given.
     files : iterable of str

@@ -63,7 +63,7 @@ def _refuse_single(options: argparse.Namespace) -> None:
     """Refuse what belongs to one scene where all are run."""
     refused = {"--preset": options.preset, "--set": options.settings, "--swap": options.swap}
     refused |= {"--transport": options.transport, "--error": options.error, "--run": options.run}
-    refused |= {"--keep": options.keep, "--force": options.force}
+    refused |= {"--keep": options.keep, "--force": options.force, "--beside": options.beside}
     wrong = [option for option, value in refused.items() if value]
     if wrong:
         raise SceneError(f"study --all takes no {', '.join(wrong)}. Remove it, or name a scene.")

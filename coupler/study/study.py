@@ -14,6 +14,7 @@ from quintet.coupler.files.disk import write_whole
 from quintet.coupler.files.json_file import JsonFile
 from quintet.coupler.files.run_files import REPORT, RESULTS
 from quintet.coupler.report import show
+from quintet.coupler.report.peer_tables import beside_table, beside_words
 from quintet.coupler.report.study_tables import costs_and_errors, orders, shares
 from quintet.coupler.report.work_precision import draw
 from quintet.coupler.run import results
@@ -25,6 +26,8 @@ from quintet.coupler.scene.study_table import Refinement
 from quintet.coupler.study.child_run import ChildRun
 from quintet.coupler.study.conclusion import conclude, shares_at
 from quintet.coupler.study.finest import compare_with_finest
+from quintet.coupler.study.peers.beside import Beside, refuse_changes
+from quintet.coupler.study.peers.peer import KIND, Peer, read_peers
 from quintet.coupler.study.row import row_of, worst
 from quintet.coupler.study.wanted_error import choose
 from quintet.interfaces.errors import SceneError
@@ -37,6 +40,7 @@ Row = dict[str, Any]
 def run_study(options: argparse.Namespace) -> int:
     """Run all refinements, compare them, and recommend a setting."""
     _check_options(options)
+    refuse_changes(options)
     asked = (options.scene, options.preset, options.settings, options.swap, options.transport)
     scene, variants = load_variants(*asked)
     wanted = JsonFile(options.json, ("scene", "rows"), kind=dict)
@@ -47,13 +51,16 @@ def run_study(options: argparse.Namespace) -> int:
         raise SceneError(
             f"study: with --run no refinement may have the label {EXTRAPOLATED}. Rename it."
         )
+    peers = read_peers(options.beside, scene)
     files = (NAME, PICTURE, REPORT)
     with begin_series(
         "study", scene.file.name, files, options.out, options.force, options.keep
     ) as place:
         place.check_runs([*folders, *([EXTRAPOLATED] if options.run else [])])
+        for peer in peers:
+            place.check_runs([peer.place(place.path, run).name for run in peer.runs], KIND)
         discard_former(place.path)
-        return _run_all(options, scene.file.name, variants.study, place.path, wanted)
+        return _run_all(options, scene.file.name, variants.study, place.path, wanted, peers)
 
 
 def _check_options(options: argparse.Namespace) -> None:
@@ -76,22 +83,28 @@ def _run_all(
     refinements: list[Refinement],
     folder: Path,
     wanted: JsonFile,
+    peers: list[Peer],
 ) -> int:
     """Run all refinements in a folder; return the exit status."""
     stop, rows = StopRequest(), []
     child = ChildRun.of(options, stop)
+    beside = Beside(peers, folder, stop, options.keep)
     with stop.listening():
-        for refinement in refinements:
+        for number, refinement in enumerate(refinements):
+            load = beside.load()
             place = folder / refinement.folder
             earlier = child.earlier(refinement.settings, place) if options.keep else None
             print(f"{refinement.label}: {'kept' if earlier else 'running'} in {place}", flush=True)
             rows.append(row_of(refinement, earlier or child.run(refinement.settings, place)))
-            rows[-1]["date"] = date_of(place)
+            rows[-1] |= {"date": date_of(place), **load}
             print(f"{refinement.label}: {rows[-1]['status']}, {rows[-1]['wall']:.1f} s", flush=True)
             if rows[-1]["status"] == "interrupted" or stop():
                 break
+            beside.turn(number)
+        beside.rest(len(refinements))
         folders = {refinement.label: folder / refinement.folder for refinement in refinements}
         summary = summarize(scene, refinements, rows, folders, options.error)
+        summary |= beside.summary()
         if options.error is not None:
             _check_offer(child, summary["wanted"])
         print_summary(summary)
@@ -174,6 +187,10 @@ def print_summary(summary: Row) -> None:
         screen.print(orders(summary["kinds"]))
     if summary["shares"]:
         screen.print(shares(summary["shares"]))
+    for peer in summary.get("peers", ()):
+        screen.print(beside_table(peer, rows))
+        for sentence in beside_words(peer, rows):
+            screen.print(sentence, markup=False)
     for sentence in recommendation(summary):
         screen.print(sentence, markup=False)
 
@@ -214,7 +231,8 @@ def _wanted_words(wanted: Row) -> list[str]:
 def status_of(summary: Row, refinements: int) -> int:
     """Exit status of the worst run; 1 where no refinement meets what is wanted or expected."""
     states = [row["status"] for row in summary["rows"]]
-    if "interrupted" in states or len(states) < refinements:
+    states += [row["status"] for peer in summary.get("peers", ()) for row in peer["rows"]]
+    if "interrupted" in states or len(summary["rows"]) < refinements:
         return results.INTERRUPTED
     if any(state != "done" for state in states):
         return results.FAILED

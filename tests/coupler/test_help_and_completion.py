@@ -9,7 +9,7 @@ import sys
 import pytest
 
 from quintet.coupler.cli import parser
-from quintet.coupler.cli.completion import settings, swaps
+from quintet.coupler.cli.completion import peers, settings, swaps
 from quintet.coupler.cli.examples import EXAMPLES
 
 ASKED = {
@@ -96,6 +96,11 @@ def test_what_the_scene_does_not_have_is_not_completed(prefix):
 def test_components_are_swapped_for_kinds():
     assert set(swaps("", CUBES)) == {"cubes=", "water="}
     assert "water=replay" in swaps("water=", CUBES)
+
+
+def test_programs_beside_a_scene_are_completed():
+    assert peers(argparse.Namespace(scene="dam_break_front")) == ["lammps"]
+    assert peers(CUBES) == peers(argparse.Namespace(scene="none.toml")) == []
 
 
 def test_completion_is_not_imported_by_other_commands():

@@ -33,7 +33,7 @@ def drawn(monkeypatch, tmp_path):
         figures.append(figure)
         return out
 
-    def make(rows, name="study"):
+    def make(rows, name="study", **more):
         names = list(rows[0]["errors"])
         sized = [one for one in rows if one["ladders"]]
         orders = {}
@@ -41,7 +41,8 @@ def drawn(monkeypatch, tmp_path):
             pairs = [(one["sizes"]["spacing"], one["errors"][expected]) for one in sized]
             orders[expected] = as_table(observed_order(*zip(*pairs, strict=True)))
         kinds = {"spacing": {"orders": orders}} if sized else {}
-        assert draw({"scene": name, "rows": rows, "kinds": kinds}, tmp_path / "study.png")
+        summary = {"scene": name, "rows": rows, "kinds": kinds, **more}
+        assert draw(summary, tmp_path / "study.png")
         return figures[-1]
 
     monkeypatch.setattr(work_precision, "save", keep)
@@ -61,6 +62,20 @@ def test_it_has_a_legend_a_front_and_triangles_with_their_slope(drawn):
     assert "spacing: order 3.00" in panel.get_title()
     (front,) = (line for line in panel.lines if line.get_label() == "Pareto front")
     assert len(front.get_xdata()) == 3
+
+
+def test_other_programs_are_squares_beside_the_front(drawn):
+    ladder = [row(f"{h} m", h**-2, {"end": h**2, "b": h}, size=h) for h in (0.4, 0.2, 0.1)]
+    runs = [row(f"{n} cells", 0.1 * n, {"end": 1.0 / n}, n > 10) for n in (10, 20)]
+    peers = [{"program": "Toy", "version": "7.1", "rows": [*runs, row("none", 1.0, {})]}]
+    first, second = drawn(ladder, peers=peers).axes
+    squares = [line for line in first.lines if line.get_marker() == "s"]
+    assert [(line.get_xdata()[0], line.get_ydata()[0]) for line in squares] == [(1, 0.1), (2, 0.05)]
+    assert [line.get_fillstyle() for line in squares] == ["none", "full"]
+    assert {line.get_label() for line in squares} == {"Toy 7.1"}
+    (front,) = (line for line in first.lines if line.get_label() == "Pareto front")
+    assert len(front.get_xdata()) == 3  # of the refinements alone
+    assert not [line for line in second.lines if line.get_marker() == "s"]
 
 
 def test_no_title_runs_off(drawn):

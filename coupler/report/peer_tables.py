@@ -1,0 +1,62 @@
+"""Tables of other programs beside a study: errors and CPU times, run by run."""
+
+import os
+from collections.abc import Sequence
+from typing import Any
+
+from rich.table import Table
+
+from quintet.coupler.report.work_precision import three_digits
+
+Row = dict[str, Any]
+
+
+def title_of(peer: Row) -> str:
+    """Name of a program with its version."""
+    return f"{peer['program']} {peer['version']}".strip()
+
+
+def beside_table(peer: Row, rows: Sequence[Row]) -> Table:
+    """One column for each run of quintet and of a program: error of each measure, CPU time.
+
+    Parameters
+    ----------
+    peer : dict
+        An entry of `peers` of ``study.json``.
+    rows : sequence of dict
+        Those of the study.
+    """
+    runs = [*rows, *peer["rows"]]
+    units = {name: unit for row in peer["rows"] for name, unit in row["units"].items()}
+    table = Table(box=None, pad_edge=False)
+    for number, head in enumerate(["", *(row["label"] for row in runs)]):
+        table.add_column(head, justify="right" if number else "left", overflow="fold")
+    table.add_row("", *len(rows) * ["quintet"], *len(peer["rows"]) * [peer["program"]])
+    table.add_row("", *map(_state, runs))
+    for name, unit in units.items():
+        errors = [row["errors"].get(name) for row in runs]
+        table.add_row(f"error of {name} [{unit}]", *map(three_digits, errors))
+    table.add_row("CPU, time steps [s]", *(three_digits(row["cpu"]) for row in runs))
+    whole = [row.get("cpu_process") or None for row in runs]
+    table.add_row("CPU, whole process [s]", *map(three_digits, whole))
+    return table
+
+
+def _state(row: Row) -> str:
+    if row["status"] != "done" or row["met"] is None:
+        return str(row["status"])
+    return "met" if row["met"] else "not met"
+
+
+def beside_words(peer: Row, rows: Sequence[Row]) -> list[str]:
+    """What was compared, and on how quiet a machine."""
+    loads = [row["load"] for row in [*rows, *peer["rows"]] if "load" in row]
+    sentences = [
+        f"{title_of(peer)}: {peer['settings']}. Inputs: {peer['source']}.",
+    ]
+    if loads:
+        sentences.append(
+            f"load of the machine as runs began: {min(loads):.1f} to {max(loads):.1f} on "
+            f"{os.cpu_count()} cores; wall times are not compared"
+        )
+    return sentences

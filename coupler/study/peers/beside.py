@@ -1,0 +1,65 @@
+"""Other programs run in turns with the refinements of a study, so that all meet the same load."""
+
+import os
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from datetime import date
+from pathlib import Path
+from typing import Any
+
+from quintet.coupler.study.peers.peer import Peer
+from quintet.interfaces.errors import SceneError
+
+Row = dict[str, Any]
+CHANGES = {"preset": "--preset", "settings": "--set", "swap": "--swap"}
+
+
+@dataclass(slots=True)
+class Beside:
+    """The programs of ``--beside`` and what their runs gave."""
+
+    peers: list[Peer]
+    series: Path  # folder of the study
+    stop: Callable[[], bool]
+    keep: bool
+    rows: dict[str, list[Row]] = field(default_factory=dict)
+
+    def turn(self, number: int) -> None:
+        """Do the run of this number of each program that has so many."""
+        for peer in self.peers:
+            if number < len(peer.runs) and not self.stop():
+                self._run(peer, number)
+
+    def rest(self, first: int) -> None:
+        """Do the runs from this number on."""
+        for number in range(first, max((len(peer.runs) for peer in self.peers), default=0)):
+            self.turn(number)
+
+    def summary(self) -> Row:
+        """What ``study.json`` has of them: nothing where there is none."""
+        peers = [peer.summary(self.rows.get(peer.name, [])) for peer in self.peers]
+        return {"peers": peers} if peers else {}
+
+    def load(self) -> Row:
+        """Load of the machine as a run begins, which is kept where programs are compared."""
+        return {"load": os.getloadavg()[0]} if self.peers else {}
+
+    def _run(self, peer: Peer, number: int) -> None:
+        run = peer.runs[number]
+        label = f"{peer.name}, {run.label}"
+        print(f"{label}: in {peer.place(self.series, run)}", flush=True)
+        row = peer.row(run, self.series, self.stop, self.keep)
+        row["date"] = date.today().isoformat()
+        self.rows.setdefault(peer.name, []).append(row)
+        cause = f": {row['cause']}" if row["cause"] else ""
+        print(f"{label}: {row['status']}, {row['cpu']:.3g} s of CPU time{cause}", flush=True)
+
+
+def refuse_changes(options: Any) -> None:
+    """Refuse changes of the scene beside programs whose inputs do not follow them."""
+    changed = [option for name, option in CHANGES.items() if getattr(options, name)]
+    if options.beside and changed:
+        raise SceneError(
+            f"--beside takes no {', '.join(changed)}: the inputs of other programs are those of "
+            "the scene as it stands. Remove it."
+        )

@@ -1,0 +1,1 @@
+"""Sod's tube by rhoCentralFoam of OpenFOAM: its case and runs."""

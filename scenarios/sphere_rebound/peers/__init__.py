@@ -1,0 +1,1 @@
+"""Other programs on the impacts of spheres: their inputs."""

@@ -1,0 +1,1 @@
+"""The impacts of spheres by the GRANULAR package of LAMMPS: its input and runs."""
