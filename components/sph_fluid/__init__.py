@@ -53,6 +53,10 @@ says (`setup/initial.py`). Fluid that joined bodies stand in is removed with
 the motion of a standing wave at the start. `staggered` rows of the lattice that fluid begins with
 are moved against each other along x, so that they do not strike a face as one (`build.py`).
 
+With `boundary.motion` the tank moves with all that stands in it, by a table or harmonically; the
+fluid is computed in its frame, with gravity turned and the forces of inertia
+(`motion/moving_frame.py`).
+
 A face of the tank named in `boundary.symmetry` has no walls and is a plane of symmetry: what is
 near it acts from behind it too, mirrored, so that half of a symmetric flow moves as the whole does.
 Nothing rubs there, nothing passes, and the plane takes the momentum across it

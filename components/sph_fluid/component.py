@@ -52,19 +52,21 @@ class SphFluid(Component):
         self._notes = list(params.notes)
         self.state, self.samples = build.state(params), Samples()
         write_pressure(self.constants, self.state.position_density, self.state.velocity_pressure)
-        self.boundary = features.boundary_method(params, self.samples)
-        self.boundary.start(self.state)
         self.all_ranks, self.symmetry = features.ranks(params, resources)
+        self.frame = features.frame(params, self.all_ranks)
+        self.boundary = features.boundary_method(params, self.samples, self.frame)
+        self.boundary.start(self.state)
         self.lists = FluidLists(params, self.samples, self.all_ranks)
         self.pressure_parts = features.pressure_parts(params, self.boundary)
         precision = features.precision(params, self.all_ranks)
         self.born = self.all_ranks.fluid(self.state)  # particles of the fluid
-        self.pairs = Interaction(params, self.boundary, self.symmetry, precision, self.samples)
+        parts = (self.boundary, self.symmetry, precision, self.samples, self.frame)
+        self.pairs = Interaction(params, *parts)
         self.integration = features.integration(params)
         self.courant = features.courant_limit(params)
         self.films: Films = NoFilms()  # before there are surfaces
         self.filter = features.shepard_filter(params)
-        self.gauges = features.gauges(params, self.symmetry, self.all_ranks)
+        self.gauges = features.gauges(params, self.symmetry, self.all_ranks, self.frame)
 
     def describe(self) -> Fields:
         """Request how surfaces are to be sampled."""
@@ -73,6 +75,7 @@ class SphFluid(Component):
     def bind(self, static: Fields, joined: Keys) -> None:
         """Make room for the samples of the surfaces joined."""
         if "surface.volume" in static:
+            self.frame.refuse_bodies()
             if self.params.dimensions == 2:
                 require_one_metre(self.params)
             self.all_ranks.join(static)
@@ -129,9 +132,11 @@ class SphFluid(Component):
             self.filter.apply(self.state, self.lists.arrays, self.team)
         rows, rate = self.boundary.rows_with_density_rate(self.state), self.pairs.rates.rate
         if self.state.steps % judgement.EVERY == 0:
-            isolated = not len(self.samples.volume) and not self.params.boundary.wall_velocity
+            isolated = not len(self.samples.volume) and self.params.boundary.stands_still
             judgement.note(self.state, self.params, self.totals(), isolated, self.all_ranks)
-        task = StepTask(dt, rows, rate, self._compute_rates, partial(self._apply_forces, dt))
+        others = (self.team, self.films, self.all_ranks)
+        apply = partial(self.pairs.apply_forces, self.state, self.lists.arrays, dt, *others)
+        task = StepTask(dt, rows, rate, partial(self._compute_rates, dt), apply)
         moved, state = self.integration.step(self.state, task, self.team), self.state
         shift2, failures, fastest, approach = self.all_ranks.greatest(
             max(shift2 for shift2, _ in moved),
@@ -145,6 +150,7 @@ class SphFluid(Component):
         state.moved = math.sqrt(shift2)
         state.largest_acceleration, state.largest_approach = fastest, approach
         state.last_dt, state.steps = dt, state.steps + 1
+        self.frame.advance(dt)
         self.all_ranks.end_step()
 
     def _list(self) -> None:
@@ -154,22 +160,15 @@ class SphFluid(Component):
         self.pairs.resize(self.state)
         self.films.resize(self.state, self.lists.arrays)
 
-    def _compute_rates(self) -> None:
-        """Accelerations and rates of density, of the state as it is."""
+    def _compute_rates(self, dt: float, share: float) -> None:
+        """Accelerations and rates of density, of the state as it is at a share of the step."""
+        self.frame.look(share * dt)
         for part in self.pressure_parts:
             if part.reads_images:
                 self.symmetry.write_images(self.state)
             part.write_pressure(self.state, self.lists.arrays, self.team)
         self.symmetry.write_images(self.state)
         self.pairs.compute(self.state, self.lists.arrays, self.team)
-
-    def _apply_forces(self, dt: float) -> None:
-        """Push the samples as they pushed the fluid; move the fluid with its neighbours (XSPH)."""
-        self.pairs.push_samples(self.state, self.team)
-        if len(self.samples.volume):
-            self.all_ranks.gather_forces(self.state, self.samples.number)
-        self.films.advance(self.state, self.lists.arrays, dt)
-        self.pairs.move_with_neighbours(self.state, dt, self.team)
 
     def check(self) -> None:
         """Refuse a particle whose velocity is not finite."""
@@ -188,7 +187,8 @@ class SphFluid(Component):
 
     def save(self) -> Fields:
         """Copy out all state; the neighbour list is kept as the places it was made from."""
-        return self.all_ranks.whole(self.state).save() | {"placed": np.array(self.samples.placed)}
+        whole = self.all_ranks.whole(self.state).save()
+        return whole | {"placed": np.array(self.samples.placed)} | self.frame.save()
 
     def load(self, state: Fields) -> None:
         """Come back to a saved state, of this run or of another that it begins from."""
@@ -198,15 +198,22 @@ class SphFluid(Component):
         self.samples.find_rows(self.state)
         self.boundary.load(self.state)
         self.films.load(self.state)
+        self.frame.load(state)
         if len(self.state.reference):
             self._list()
 
+    def begin_from(self, state: Fields) -> None:
+        """Begin from the state of another run; the tank's motion begins with this one."""
+        super().begin_from(state)
+        self.frame.restart()
+
     def totals(self) -> Totals:
-        """Mass, momentum and energies of the fluid that is left."""
+        """Mass, momentum and energies of the fluid that is left, in the frame of its tank."""
         totals = diagnostics.totals(self.state, self.params, self.constants, self.all_ranks)
         if len(self.state.reference):
             self.symmetry.write_images(self.state)
             totals.internal += self.boundary.energy(self.state, self.lists.arrays, self.team)
+        totals.work = self.frame.work
         return totals
 
     def view(self) -> Fields:

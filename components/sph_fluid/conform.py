@@ -14,6 +14,11 @@ DROP: dict[str, Any] = {
     "gravity": [0.0, 0.0, 0.0],
     "fluid": [{"shape": "box", "lowest": [0.0, 0.0, 0.0], "highest": [0.2, 0.2, 0.2]}],
 }
+ROLLING = {
+    "method": "mdbc",
+    "walls": {"shape": "box", "lowest": [-0.1, -0.1, -0.1], "highest": [0.3, 0.3, 0.3]},
+    "motion": {"period": 0.5, "angle_amplitude": 0.2, "ramp": 0.1, "axis": [0.0, 1.0, 0.0]},
+}
 MIRRORED = {
     "boundary": {"method": "mdbc", "lubrication_films": True},
     "density_diffusion": 0.1,
@@ -24,7 +29,7 @@ PLACES = np.array([[0.1, 0.1, -0.05], [0.15, 0.1, -0.05]])  # (2, 3) m, of the s
 
 
 def cases() -> tuple[ConformCase, ...]:
-    """Walls of either kind, both integrators, gauges, two dimensions."""
+    """Walls of either kind, both integrators, gauges, two dimensions, a tank that moves."""
     twice = {**DROP, "integration": "symplectic"}
     box = {"shape": "box", "lowest": [0.0, 0.0, 0.0], "highest": [0.2, 1.0, 0.2]}
     slab = {**DROP, "dimensions": 2, "fluid": [box]}
@@ -33,6 +38,7 @@ def cases() -> tuple[ConformCase, ...]:
         _case("drop, mirrored walls and films", {**DROP, **MIRRORED}, mirror=True),
         _case("drop, symplectic, with gauges", {**twice, "gauges": GAUGES}),
         _case("drop in two dimensions", slab, volume=2.5e-3),
+        ConformCase("drop in a tank that rolls", {**DROP, "boundary": ROLLING}, dt=1e-4),
     )
 
 

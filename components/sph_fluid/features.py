@@ -13,6 +13,7 @@ from quintet.components.sph_fluid.boundary.method import BoundaryMethod, Films, 
 from quintet.components.sph_fluid.boundary.samples import Samples
 from quintet.components.sph_fluid.boundary.symmetry_planes import NoSymmetry, SymmetryPlanes
 from quintet.components.sph_fluid.integration.method import Integration
+from quintet.components.sph_fluid.motion.frame import Frame, StillFrame
 from quintet.components.sph_fluid.pairs.precision import DoublePrecision, Precision
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.ranks.method import Ranks
@@ -36,13 +37,23 @@ class PressurePart(Protocol):
         """Write p/ρ² of some rows of the state."""
 
 
-def boundary_method(params: SphFluidParams, samples: Samples) -> BoundaryMethod:
+def frame(params: SphFluidParams, ranks: Ranks) -> Frame:
+    """The frame that the fluid is computed in."""
+    if params.boundary.motion is None:
+        return StillFrame(params)
+    # Left out of scenes whose tank stands still.
+    from quintet.components.sph_fluid.motion.moving_frame import MovingFrame
+
+    return MovingFrame(params, params.boundary.motion, ranks)
+
+
+def boundary_method(params: SphFluidParams, samples: Samples, frame: Frame) -> BoundaryMethod:
     """How walls and samples act."""
     if params.boundary.method == "mdbc":
         # Mirrored walls are left out of scenes with other boundaries.
         from quintet.components.sph_fluid.boundary.mirrored import MirroredBoundary
 
-        return MirroredBoundary(params, samples, partial(contact_stiffness, params))
+        return MirroredBoundary(params, samples, partial(contact_stiffness, params), frame)
     if params.boundary.method == "potential":
         # The contact potential is left out of scenes with other boundaries.
         from quintet.components.sph_fluid.boundary.potential import PotentialBoundary
@@ -190,7 +201,9 @@ def integration(params: SphFluidParams) -> Integration:
     return Extrapolated(params)
 
 
-def gauges(params: SphFluidParams, symmetry: SymmetryPlanes, ranks: Ranks) -> "Gauges | None":
+def gauges(
+    params: SphFluidParams, symmetry: SymmetryPlanes, ranks: Ranks, frame: Frame
+) -> "Gauges | None":
     """What is measured."""
     asked = params.gauges
     if not (asked.pressure_gauges or asked.level_gauges or asked.front_gauge or asked.motion_gauge):
@@ -198,4 +211,4 @@ def gauges(params: SphFluidParams, symmetry: SymmetryPlanes, ranks: Ranks) -> "G
     # Left out of scenes without gauges.
     from quintet.components.sph_fluid.gauges.gauges import Gauges
 
-    return Gauges(params, symmetry, ranks)
+    return Gauges(params, symmetry, ranks, frame)

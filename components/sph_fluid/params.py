@@ -149,6 +149,11 @@ class SphFluidParams:
         apart = 3.0 * self.smoothing_length
         checks.check_symmetry(boundary, dimensions, self.gravity, apart, spacing)
         checks.check_method(boundary, dimensions)
+        if boundary.motion is not None:
+            # Left out of scenes whose tank stands still.
+            from quintet.components.sph_fluid.setup.motion_checks import check_motion
+
+            check_motion(boundary, boundary.motion, dimensions)
         self._check_methods()
         self.gauges.check(boundary, spacing, dimensions)
         if self.shapes:

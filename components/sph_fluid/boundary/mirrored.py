@@ -27,6 +27,7 @@ from quintet.components.sph_fluid.boundary.samples import Samples
 from quintet.components.sph_fluid.boundary.symmetry_planes import SymmetryPlanes
 from quintet.components.sph_fluid.boundary.walls import wall_mirrors
 from quintet.components.sph_fluid.constants import NO_POTENTIAL, constants
+from quintet.components.sph_fluid.motion.frame import Frame
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.state import Array, State, Whole
 from quintet.interfaces.component import Fields
@@ -46,13 +47,13 @@ class MirroredBoundary:
         params: SphFluidParams,
         samples: Samples,
         make_stiffness: Callable[[], "ContactStiffness"],
+        frame: Frame,
     ) -> None:
         self.params, self.samples, self._make_stiffness = params, samples, make_stiffness
+        self.frame = frame
         self.contact, self.stable_dt = NO_POTENTIAL, math.inf
         self.mask: Array = np.zeros(0)
         self.by_potential: Whole = np.zeros(0, np.int64)  # (k,) samples under the potential
-        gravity = math.hypot(*params.hydrostatic_gravity)
-        self.gradient = params.density * gravity / params.sound_speed**2  # kg/m4, at rest
 
     def start(self, state: State) -> None:
         """Mirror the walls."""
@@ -120,7 +121,9 @@ class MirroredBoundary:
             state.velocity_pressure,
             lists,
         )
-        numbers = (self.gradient, constants(self.params))
+        gravity, params = math.hypot(*self.frame.rest_acceleration), self.params
+        rest_gradient = params.density * gravity / params.sound_speed**2  # kg/m4
+        numbers = (rest_gradient, constants(params))
         team.run(extrapolate_density, len(listed), state.fluid, *arrays, *numbers)
 
     def apparent_velocity(self, state: State, lists: Lists, team: Team) -> Array:

@@ -29,6 +29,7 @@ from quintet.components.shared.smoothing.smoothing import kernel
 from quintet.components.sph_fluid.boundary.symmetry_planes import SymmetryPlanes
 from quintet.components.sph_fluid.constants import constants
 from quintet.components.sph_fluid.gauges.kernels import add_around, fill_columns, furthest
+from quintet.components.sph_fluid.motion.frame import Frame
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.ranks.method import Ranks
 from quintet.components.sph_fluid.state import Array, State
@@ -44,8 +45,11 @@ DEEP = 4.0  # spacings, of the share of volume along a column that is no drop
 class Gauges:
     """The gauges of one fluid that are switched on."""
 
-    def __init__(self, params: SphFluidParams, symmetry: SymmetryPlanes, ranks: Ranks) -> None:
+    def __init__(
+        self, params: SphFluidParams, symmetry: SymmetryPlanes, ranks: Ranks, frame: Frame
+    ) -> None:
         self.params, self.constants, self.ranks = params, constants(params), ranks
+        self.frame = frame
         self.points = np.array(params.gauges.pressure_gauges).reshape(-1, 3)  # (m, 3) m
         self.spots = np.array(params.gauges.level_gauges).reshape(-1, 2)  # (m, 2) m
         if params.dimensions == 2:
@@ -76,7 +80,7 @@ class Gauges:
 
     def _pressure(self, state: State) -> Array:
         sums = np.empty((len(self.image_points), 3))
-        weight = self.params.density * np.array(self.params.gravity)
+        weight = self.params.density * self.frame.weight_at(self.image_points)
         position, velocity, split = self.ranks.near(state, partial(self._near, self.image_points))
         add_around(self.image_points, split, position, velocity, self.constants, weight, sums)
         share, walls, load = sums.reshape(-1, len(self.points), 3).sum(axis=0).T

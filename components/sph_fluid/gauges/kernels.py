@@ -19,7 +19,7 @@ def add_around(
 ) -> None:  # fmt: skip
     """Write Σ V W of fluid, of walls, and Σ V W (p + weight·(point - r)) of fluid; (m, 3).
 
-    `points` (m, 3) m; `weight` (3,) N/m3, of the fluid.
+    `points` (m, 3) m; `weight` (m, 3) N/m3, of fluid at rest there.
     """
     reach2 = (SUPPORT * constants.smoothing.length) ** 2
     sums[:] = 0.0
@@ -35,7 +35,8 @@ def add_around(
             if j < split:
                 pressure = velocity[j, 3] * density * density
                 sums[g, 0] += share
-                sums[g, 2] += share * (pressure + weight[0] * x + weight[1] * y + weight[2] * z)
+                carried = weight[g, 0] * x + weight[g, 1] * y + weight[g, 2] * z
+                sums[g, 2] += share * (pressure + carried)
             else:
                 sums[g, 1] += share
 

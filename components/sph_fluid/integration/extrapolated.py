@@ -25,7 +25,7 @@ class Extrapolated:
 
     def step(self, state: State, task: StepTask, team: Team) -> Moved:
         """Advance a state by a step."""
-        task.compute_rates()
+        task.compute_rates(0.5)
         task.apply_forces()
         dt, last = task.dt, state.last_dt
         # At most twice as far as the last step: extrapolating from a tiny step would magnify noise.

@@ -15,7 +15,8 @@ class StepTask(NamedTuple):
     dt: float  # s
     rows: int  # whose density obeys the equation of continuity
     rate: Array  # (n, 4) m/s2, m/s2, m/s2, kg/(m3 s), as the last pass over pairs wrote it
-    compute_rates: Callable[[], None]  # writes those of the state as it is
+    compute_rates: Callable[[float], None]  # writes those of the state as it is, with outer
+    # forces at a share of the step
     apply_forces: Callable[[], None]  # once, with the forces that the step is made of
 
 

@@ -28,13 +28,13 @@ class PositionVerlet:
         """Advance a state by a step."""
         dt, rate = task.dt, task.rate
         if not len(state.acceleration):
-            task.compute_rates()
+            task.compute_rates(0.0)
             state.previous_density_rate[: task.rows] = rate[: task.rows, 3]
             state.acceleration = rate[: state.fluid, :3].copy()
         numbers, rows = (state.fluid, dt), Rows.of(state, rate)
         team.run(half_step, task.rows, *numbers, self.constants, rows)
-        task.compute_rates()
+        task.compute_rates(0.5)
         task.apply_forces()
         team.run(kick, state.fluid, dt, rows)
-        task.compute_rates()
+        task.compute_rates(1.0)
         return team.run(finish, task.rows, *numbers, self.furthest, self.constants, rows)

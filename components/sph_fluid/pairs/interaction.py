@@ -6,7 +6,7 @@ import numpy as np
 
 from quintet.components.shared.search.neighbours import Lists
 from quintet.components.shared.threads import Team
-from quintet.components.sph_fluid.boundary.method import BoundaryMethod
+from quintet.components.sph_fluid.boundary.method import BoundaryMethod, Films
 from quintet.components.sph_fluid.boundary.samples import Samples
 from quintet.components.sph_fluid.boundary.symmetry_planes import SymmetryPlanes
 from quintet.components.sph_fluid.boundary.walls import wall_volume
@@ -16,9 +16,11 @@ from quintet.components.sph_fluid.kernels import (
     Rates,
     pair_rates,
 )
+from quintet.components.sph_fluid.motion.frame import Frame
 from quintet.components.sph_fluid.pairs.kernels import move_by, sample_forces
 from quintet.components.sph_fluid.pairs.precision import Precision
 from quintet.components.sph_fluid.params import SphFluidParams
+from quintet.components.sph_fluid.ranks.method import Ranks
 from quintet.components.sph_fluid.setup.mass import EVEN
 from quintet.components.sph_fluid.state import Array, State
 
@@ -35,8 +37,10 @@ class Interaction:
         symmetry: SymmetryPlanes,
         precision: Precision,
         samples: Samples,
+        frame: Frame,
     ) -> None:
         self.params, self.boundary, self.symmetry = params, boundary, symmetry
+        self.frame = frame
         self.precision, self.samples = precision, samples
         self.rates = Rates(np.empty((0, 4)), np.empty((0, 3)), np.empty(0))
         self.volume: Array = np.zeros(0)  # (n,) 1, of boundary rows; (0,) if all are alike
@@ -62,12 +66,13 @@ class Interaction:
         """Write accelerations and rates of density, of the state as it is."""
         boundary = self.precision.boundary(self._boundary_rows(state, lists, team))
         particles = self.precision.particles(state, team)
-        self.given = (particles, boundary, lists, self.law)
+        self.given = (particles, boundary, lists, self.frame.law(self.law))
         rates = self.rates._replace(minus_rho_div_u=state.minus_rho_div_u)
         rows = self.boundary.rows_with_density_rate(state)
         arguments = (state.fluid, *self.given, self.params.gravity, rates)
         extremes = team.run(pair_rates, rows, *arguments)
-        state.largest_acceleration = math.sqrt(max(greatest for greatest, _ in extremes))
+        largest = math.sqrt(max(greatest for greatest, _ in extremes))
+        state.largest_acceleration = self.frame.accelerate(state, rates.rate, largest, team)
         state.largest_approach = max(fastest for _, fastest in extremes)
 
     def _boundary_rows(self, state: State, lists: Lists, team: Team) -> BoundaryRows:
@@ -77,6 +82,17 @@ class Interaction:
             velocity = self.boundary.apparent_velocity(state, lists, team)
             self.symmetry.write_vectors(velocity, state.particles)
         return BoundaryRows(velocity, self.volume, self.boundary.mask)
+
+    def apply_forces(
+        self, state: State, lists: Lists, dt: float, team: Team, films: Films, ranks: Ranks
+    ) -> None:
+        """Push the samples as they pushed the fluid; move the fluid with its neighbours (XSPH)."""
+        self.push_samples(state, team)
+        if len(self.samples.volume):
+            ranks.gather_forces(state, self.samples.number)
+        films.advance(state, lists, dt)
+        self.frame.count_work(state, dt)
+        self.move_with_neighbours(state, dt, team)
 
     def push_samples(self, state: State, team: Team) -> None:
         """Push the samples as they pushed the fluid in the last pass."""

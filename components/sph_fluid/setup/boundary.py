@@ -7,6 +7,7 @@ from quintet.components.shared.geometry.bounds import Bounds
 from quintet.components.shared.geometry.shapes import Box
 from quintet.components.sph_fluid.setup.boundary_meshes import BoundaryMesh
 from quintet.components.sph_fluid.setup.geometry import FACES, Exponent, Face, UprightFace
+from quintet.components.sph_fluid.setup.motion import Motion
 from quintet.interfaces.params import Fraction, NotNegative, Positive, Vector, parameters
 
 
@@ -32,6 +33,8 @@ class Boundary:
         Boxes that stand still in the tank.
     meshes
         Tanks and obstacles from files, with or without walls; in three dimensions.
+    motion
+        How the tank with all that stands in it moves; the fluid is computed in its frame.
     wall_offset : 1
         Spacings from a wall's face out to its first particles; 0.5 with mdbc.
     sample_depth : 1
@@ -64,6 +67,7 @@ class Boundary:
     wall_velocity: dict[Face, Vector] = field(default_factory=dict)
     obstacles: tuple[Box, ...] = ()
     meshes: tuple[BoundaryMesh, ...] = ()
+    motion: Motion | None = None
     wall_offset: Positive = 0.5
     sample_depth: NotNegative = 0.5
     wall_viscosity_factor: Fraction = 1.0
@@ -81,6 +85,11 @@ class Boundary:
     def solids(self) -> tuple[Bounds, ...]:
         """Lowest and highest corners [m] of the obstacles."""
         return tuple(box.bounds for box in self.obstacles)
+
+    @property
+    def stands_still(self) -> bool:
+        """Whether nothing of the boundary moves."""
+        return not self.wall_velocity and self.motion is None
 
     def closed_faces(self, dimensions: int) -> tuple[Face, ...]:
         """Faces at which the tank has wall particles."""

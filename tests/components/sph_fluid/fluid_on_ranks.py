@@ -58,6 +58,27 @@ PARAMS = {
         "density_diffusion": 0.1,
         "viscosity__artificial": 0.05,
     },
+    "rolling": {  # tank, in one pass over pairs
+        "boundary__method": "dbc",
+        "boundary__walls": TANK,
+        "boundary__motion": {"period": 0.5, "angle_amplitude": 0.3, "axis": [0.1, 1.0, 0.0]},
+        "fluid": [DAM],
+        **GAUGES,
+    },
+    "swaying": {  # tank, in two passes, along a plane of symmetry
+        "boundary__method": "mdbc",
+        "boundary__walls": TANK,
+        "boundary__symmetry": ["y-"],
+        "boundary__motion": {
+            "times": [0.0, 0.1, 1.0],
+            "displacement": [[0.0, 0.0, 0.0], [0.1, 0.0, 0.0], [0.0, 0.0, 0.0]],
+        },
+        "fluid": [DAM],
+        "integration": "symplectic",
+        "courant": 1.0,
+        "density_diffusion": 0.1,
+        **GAUGES,
+    },
     "single": {  # precision, with a plane of symmetry
         "precision": "float32",
         "boundary__method": "mdbc",

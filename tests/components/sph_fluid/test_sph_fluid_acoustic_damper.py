@@ -76,7 +76,7 @@ def squeezed(fluid: SphFluid) -> np.ndarray:
     """What the damper knows of the flow: -ρ∇·u (n,) kg/(m3 s)."""
     fluid.lists.sort(fluid.state)
     fluid._list()
-    fluid._compute_rates()
+    fluid._compute_rates(0.0, 0.0)
     return fluid.state.minus_rho_div_u[: fluid.state.fluid]
 
 

@@ -44,7 +44,7 @@ def test_walls_carry_on_a_linear_density(slope):
     state.position_density[rows, 3] = linear[rows]
     fluid.lists.sort(fluid.state)
     fluid._list()
-    fluid._compute_rates()
+    fluid._compute_rates(0.0, 0.0)
     points, density = walls(fluid)[0][:, :3], walls(fluid)[0][:, 3]
     wet = (points[:, 2] < 0.1) & (points[:, 2] > -0.03)
     expected = 1005.0 + points @ np.array(slope)

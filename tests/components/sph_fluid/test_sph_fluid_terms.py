@@ -19,7 +19,7 @@ def drop(**given):
 def rates(fluid):
     fluid.lists.sort(fluid.state)
     fluid._list()
-    fluid._compute_rates()
+    fluid._compute_rates(0.0, 0.0)
     return fluid.pairs.rates.rate[: fluid.state.fluid]
 
 

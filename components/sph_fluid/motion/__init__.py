@@ -1,0 +1,1 @@
+"""Tanks that move: the fluid in the frame of its tank."""
