@@ -116,6 +116,9 @@ class Totals:
     # J that friction, viscosity or damping took so far and `internal` and `work` do not hold; 0
     # where they hold all of it; None: not known.
     dissipated: float | None = None
+    # kg by reason: what it began with, what came since, and, negative, what left. They add up to
+    # `mass`. Empty: not known.
+    mass_balance: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)
@@ -157,6 +160,7 @@ class Component(ABC):
     compiles: bool = False  # whether to try a step, which is undone, before the run's clock starts
     shows: tuple[Field, ...] = ()  # fields of its view; the first is drawn if a scene names none
     gives_integrals: bool = False  # whether `give` returns integrals over the last step, not rates
+    items_vary: bool = False  # whether it may come to have more items than it began with
     ranks: bool = False  # whether it can own several MPI ranks
     patience: float = PATIENCE  # s, how long it may keep others waiting beyond three usual windows
     Params: Any = None  # its parameter class, where no manifest names one
@@ -289,7 +293,7 @@ class Component(ABC):
         """
         count = self.items()
         self.load(state)
-        if self.items() > count:  # fewer: some have left
+        if self.items() > count and not self.items_vary:  # fewer: some have left
             raise SceneError(
                 f"the state that it begins from must be of its {count} items; found "
                 f"{self.items()}. Make both scenes alike, or leave it out of begin_from.components."

@@ -8,11 +8,19 @@ from quintet.interfaces.errors import PortError
 UNITS = {
     "1", "s", "m", "m2", "m3", "kg", "kg m2", "kg/m3", "kg/s", "m/s", "m/s2", "m2/s2", "rad/s",
     "1/s", "N", "N m", "N s", "N m s", "N/m", "Pa", "Pa s", "J", "W", "K", "J/K", "J/kg", "W/m2",
-    "W/(m K)", "rad",
+    "W/(m K)", "rad", "m3/s",
 }  # fmt: skip
 
 # What an impulse field carries over a link: its integral over the window.
-INTEGRATED = {"N": "N s", "N m": "N m s", "W": "J", "m/s": "m", "rad/s": "rad", "kg/s": "kg"}
+INTEGRATED = {
+    "N": "N s",
+    "N m": "N m s",
+    "W": "J",
+    "m/s": "m",
+    "rad/s": "rad",
+    "kg/s": "kg",
+    "m3/s": "m3",
+}
 
 # Derived units in base ones; rad is none.
 DERIVED = {

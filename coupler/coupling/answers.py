@@ -24,6 +24,7 @@ TOTALS = {
     "work": 0,
 }
 DISSIPATED = "dissipated"  # of totals: a number or None, where a component knows it
+MASS_BALANCE = "mass_balance"  # of totals: numbers by reason, where a component knows them
 
 
 def _is_number(value: Any) -> bool:
@@ -53,7 +54,12 @@ def _is_motion(value: Any) -> bool:
 
 
 def _are_totals(value: Any) -> bool:
-    if not isinstance(value, dict) or value.keys() - {DISSIPATED} != TOTALS.keys():
+    if not isinstance(value, dict) or value.keys() - {DISSIPATED, MASS_BALANCE} != TOTALS.keys():
+        return False
+    masses = value.get(MASS_BALANCE, {})
+    if not isinstance(masses, dict) or not is_names([*masses]):
+        return False
+    if not all(map(_is_number, masses.values())):
         return False
     dissipated = value.get(DISSIPATED)
     if dissipated is not None and type(dissipated) not in NUMBERS:

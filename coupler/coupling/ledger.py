@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from quintet.coupler.coupling.answers import MASS_BALANCE
 from quintet.coupler.coupling.energy_balance import KINDS, EnergyBalance
 from quintet.coupler.coupling.exchange import Delivery, Exchange, WindowInputs
 from quintet.coupler.coupling.link import Transfer
@@ -271,7 +272,9 @@ class Ledger:
             self.accounts[row["link"]] = Account(**attributes_like(Account(""), values))
         self.totals = dict(state["totals"])
         for sums in self.totals.values():
-            np.hstack([np.asarray(value, dtype=float) for value in sums.values()])
+            masses = sums.get(MASS_BALANCE, {})
+            numbers = [value for key, value in sums.items() if key != MASS_BALANCE]
+            np.hstack([np.asarray(value, dtype=float) for value in (*numbers, *masses.values())])
         self.energy.load(state["energy"])
         self.warnings.load(state["warnings"])
         self._balance.load(state["balance"])
@@ -292,6 +295,11 @@ class Ledger:
             "links": links,
             "energy_balance": self.energy.summary(),
             "mass_drift": self.energy.mass_drift(),
+            "mass_balance": {
+                name: _mass_balance(sums)
+                for name, sums in self.totals.items()
+                if sums.get(MASS_BALANCE)
+            },
         }
 
     def sync(self) -> None:
@@ -301,6 +309,13 @@ class Ledger:
     def close(self) -> None:
         """Close the file."""
         self._table.close()
+
+
+def _mass_balance(totals: Mapping[str, Any]) -> dict[str, Any]:
+    """Masses by reason [kg], the mass that there is [kg], and by how much they disagree [1]."""
+    masses, mass = totals[MASS_BALANCE], totals["mass"]
+    turnover = sum(map(abs, masses.values())) or 1.0
+    return {"kg": masses, "now": mass, "residual": abs(sum(masses.values()) - mass) / turnover}
 
 
 def _as_row(account: Account) -> dict[str, Any]:

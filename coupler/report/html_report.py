@@ -68,7 +68,7 @@ def _outcome(outcome: Mapping[str, Any]) -> dict[str, Any]:
 def _parts(run: Run) -> list[Part]:
     """Sections behind the pictures."""
     results, ledger = run.results, run.ledger
-    masses = run_tables.mass_changes(results)
+    masses = [run_tables.mass_changes(results), *run_tables.mass_balances(results)]
     waits = sentences(results["advice"]) if results.get("advice") else []
     components = (results.get("timing") or {}).get("components") or {}
     notes = [
@@ -79,7 +79,7 @@ def _parts(run: Run) -> list[Part]:
         Part(bars.title, [run_tables.error_bar_notes(results)] if bars.rows else [], bars),
         Part(
             "Balances",
-            [masses] if masses else [],
+            [line for line in masses if line],
             run_tables.ledger(results),
             page.svg_image(figures.links(ledger)),
             "Work of the links as both sides count it, and by how much their sums disagree",

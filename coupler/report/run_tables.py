@@ -174,6 +174,19 @@ def mass_changes(run: Mapping[str, Any]) -> str:
     return "Mass: " + ", ".join(said) if said else ""
 
 
+def mass_balances(run: Mapping[str, Any]) -> list[str]:
+    """What came to each component and what left it, by reason, where anything did."""
+    balances = (run.get("ledger") or {}).get("mass_balance") or {}
+    return [
+        f"Mass of {name}: "
+        + ", ".join(f"{mass:+.6g} kg {reason}" for reason, mass in balance["kg"].items())
+        + f"; {balance['now']:.6g} kg now, which differs from their sum by "
+        f"{balance['residual']:.1g} of it"
+        for name, balance in balances.items()
+        if len(balance["kg"]) > 1
+    ]
+
+
 def timing(run: Mapping[str, Any]) -> TableOfRun:
     """Seconds, steps and items of each component."""
     components = (run.get("timing") or {}).get("components") or {}

@@ -20,6 +20,7 @@ from quintet.coupler.report.run_tables import (
     error_bars,
     expectations,
     ledger,
+    mass_balances,
     mass_changes,
     number,
     time_shares,
@@ -78,7 +79,8 @@ def print_results(run: Mapping[str, Any], screen: Console, frame: box.Box | None
         if outcome.get("reason"):
             screen.print(Text(f"{outcome.get('name', '?')}: not met: {outcome['reason']}"))
     advised = sentences(run["advice"]) if run.get("advice") else []
-    for line in (error_bar_notes(run), mass_changes(run), time_shares(run), *advised):
+    masses = [mass_changes(run), *mass_balances(run)]
+    for line in (error_bar_notes(run), *masses, time_shares(run), *advised):
         if line:
             screen.print(line)
     for name, notes in (run.get("notes") or {}).items():

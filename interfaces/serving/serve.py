@@ -253,6 +253,7 @@ class Server:
 
     def _totals(self) -> dict[str, Any]:
         totals = self.component.totals()
+        masses = {str(reason): float(mass) for reason, mass in totals.mass_balance.items()}
         return {
             "mass": float(totals.mass),
             "momentum": [float(p) for p in totals.momentum],
@@ -262,6 +263,7 @@ class Server:
             "internal": float(totals.internal),
             "work": float(totals.work),
             "dissipated": None if totals.dissipated is None else float(totals.dissipated),
+            **({"mass_balance": masses} if masses else {}),
         }
 
     def state(self) -> dict[str, Any]:

@@ -37,6 +37,14 @@ def it_counts_what_it_advances_and_what_it_holds(trial: Trial) -> None:
             f"totals: {name} must be {'(3,)' if 'momentum' in name else 'one number'}; found shape "
             f"{np.shape(value)}. Correct it.",
         )
+    if totals.mass_balance:
+        masses = [float(mass) for mass in totals.mass_balance.values()]
+        scale = sum(map(abs, masses))
+        require(
+            abs(sum(masses) - totals.mass) <= ROUNDING * scale,
+            f"totals: mass_balance must add up to the mass, {totals.mass:g} kg; found "
+            f"{sum(masses):g} kg. Count all that came and left.",
+        )
     for name in ("mass", "kinetic"):
         value = float(numbers[name])
         require(value >= 0.0, f"totals: {name} must be 0 or more; found {value:g}. Correct it.")

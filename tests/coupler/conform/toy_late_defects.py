@@ -194,6 +194,14 @@ class NegativeEnergy(Sound):
         return Totals(1.0, np.zeros(3), np.zeros(3), -1.0)
 
 
+@breaks(accounts.it_counts_what_it_advances_and_what_it_holds)
+class MissesMass(Sound):
+    def totals(self):
+        totals = super().totals()
+        totals.mass_balance = {"at the start": totals.mass, "entered": 0.1 * totals.mass}
+        return totals
+
+
 @breaks(accounts.momentum_changes_by_the_impulses)
 class FeelsNoReaction(Sound):
     def step(self, dt):

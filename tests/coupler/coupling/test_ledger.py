@@ -126,6 +126,20 @@ def test_every_note_writes_a_row_for_each_link_and_component(tmp_path):
     assert ledger.summary()["mass_drift"]["a"] == {"kg": 0.0, "relative": 0.0}
 
 
+def test_a_mass_balance_that_a_component_keeps_is_told_and_saved(tmp_path):
+    ledger, other = (Ledger(_exchange(), tmp_path / f"{name}.csv") for name in ("one", "other"))
+    sums = {"mass": 3.0, "momentum": [0.0] * 3, "kinetic": 0.0, "potential": 0.0, "internal": 0.0}
+    sums |= {"work": 0.0, "mass_balance": {"at the start": 2.0, "entered": 1.5}}
+    ledger.note(0.0, {"a": sums, "b": {**sums, "mass_balance": {}}})
+    other.load(ledger.save())
+    for each in (ledger, other):
+        told = each.summary()["mass_balance"]
+        assert told.keys() == {"a"}
+        assert told["a"]["kg"] == {"at the start": 2.0, "entered": 1.5}
+        assert (told["a"]["now"], told["a"]["residual"]) == (3.0, pytest.approx(0.5 / 3.5))
+        each.close()
+
+
 def _totals(kinetic, potential=0.0, work=0.0, mass=0.0, **more):
     energies = {"kinetic": kinetic, "potential": potential, "internal": 0.0}
     return {"a": {**energies, "work": work, "mass": mass, **more}}

@@ -107,6 +107,19 @@ def test_show_tells_of_masses_that_changed(tmp_path, capsys):
     assert "Energy" not in text
 
 
+def test_show_tells_where_mass_came_from_and_went(tmp_path, capsys):
+    masses = {"at the start": 10.0, "entered by the inflow x-": 2.0, "lost through the wall z-": -1}
+    balance = {"water": {"kg": masses, "now": 11.0, "residual": 0.0}}
+    still = {"basin": {"kg": {"at the start": 3.0}, "now": 3.0, "residual": 0.0}}
+    ledger = {"links": [], "mass_balance": balance | still}
+    text = _shown(tmp_path, RESULTS | {"ledger": ledger}, capsys)
+    assert (
+        "Mass of water: +10 kg at the start, +2 kg entered by the inflow x-, -1 kg lost through "
+        "the wall z-; 11 kg now, which differs from their sum by 0 of it\n"
+    ) in text
+    assert "basin" not in text, "nothing came or left"
+
+
 def test_show_tells_nothing_of_energy_and_mass_where_no_component_has_them(tmp_path, capsys):
     bare = {"links": [], "energy_balance": None, "mass_drift": {}}
     text = _shown(tmp_path, RESULTS | {"ledger": bare}, capsys)
