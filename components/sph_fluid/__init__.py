@@ -41,8 +41,10 @@ to a `courant` of 1.6 instead of 0.4 (`integration/position_verlet.py`).
 What strikes the fluid faster than half the speed of sound, so that its density rises by a quarter,
 is an error: a weakly compressible fluid allows a tenth (Monaghan 1994).
 
-A particle that goes further than half of the tank's longest edge beyond the walls is lost: it is
-removed, and `totals` shows its mass missing. Without walls none is.
+A particle that goes further than half of the tank's longest edge beyond the walls is lost and
+removed; without walls none is. The mass balance of `totals` has its mass under the face of the tank
+through which it went: a wall, or an open face (`mass_balance/losses.py`). Where more of the
+fluid is lost than `lost_limit`, the run ends and names the place.
 
 Particles of fluid weigh together what its boxes and `shapes` hold, whether or not the spacing
 divides these (`setup/mass.py`). Fluid starts at rest under hydrostatic pressure, or as `initial`
@@ -63,15 +65,24 @@ Nothing rubs there, nothing passes, and the plane takes the momentum across it
 (`boundary/symmetry.py`). Surfaces stay before it, gravity lies in it, and films in narrow gaps do
 not know it.
 
-Gauges (`pressure_gauges`, `level_gauges`, `front_gauge`, `motion_gauge`) give what a scene compares
-with a reference, each in a port of its own; see `gauges/gauges.py` for what they read.
+Along an axis in `boundary.periodic` the tank repeats: what is near one face acts from behind the
+opposite one too, and fluid that leaves there enters here (`open_boundaries/periodic.py`). Gravity
+along x or y then drives the flow.
+
+Fluid enters by faces in `boundary.inflow`, with a profile of speeds, and leaves by those in
+`boundary.outflow`; both have buffers of particles (Tafuni et al. 2018) that are no part of the
+fluid (`open_boundaries/flow.py`).
+
+Gauges (`pressure_gauges`, `level_gauges`, `velocity_gauges`, `discharge_gauges`, `front_gauge`,
+`motion_gauge`, `mass_gauge`) give what a scene compares with a reference, each in a port of its
+own; see `gauges/gauges.py` and `gauges/flow.py` for what they read.
 
 Papers: Monaghan, Annu. Rev. Astron. Astrophys. 30 (1992) 543; Monaghan, J. Comput. Phys. 82
 (1989) 1 (XSPH) and 110 (1994) 399 (Tait); Monaghan & Kos, J. Waterway Port Coast. Ocean Eng. 125
 (1999) 145 (time step); Panizzo, PhD thesis, L'Aquila (2004) (Shepard filter); Crespo,
 Gómez-Gesteira & Dalrymple, CMC 5 (2007) 173 (walls); Lo & Shao, Appl. Ocean Res. 24 (2002) 275;
 Monaghan & Gingold, J. Comput. Phys. 52 (1983) 374; Colagrossi et al., Phys. Rev. E 84 (2011)
-026705.
+026705; Tafuni, Domínguez, Vacondio & Crespo, Comput. Methods Appl. Mech. Eng. 342 (2018) 604.
 """
 
 from quintet.components.sph_fluid.params import SphFluidParams

@@ -37,6 +37,8 @@ def state(params: SphFluidParams) -> State:
         start.velocity_pressure[: len(moves), :3] = moves
     if params.initial is not None:
         _write_initial(start, params.initial, params.density)
+    if params.boundary.tank is not None:
+        start.exit_face = np.zeros(start.fluid, np.int64)
     if params.acoustic_damper > 0.0:
         start.minus_rho_div_u = np.zeros(start.particles)
     start.largest_acceleration = math.hypot(*params.gravity)

@@ -13,6 +13,7 @@ from quintet.components.sph_fluid.boundary.samples import Samples
 from quintet.components.sph_fluid.constants import constants
 from quintet.components.sph_fluid.integration.method import StepTask
 from quintet.components.sph_fluid.kernels import write_pressure
+from quintet.components.sph_fluid.mass_balance.losses import refuse_many_lost
 from quintet.components.sph_fluid.pairs.interaction import Interaction
 from quintet.components.sph_fluid.pairs.neighbour_lists import FluidLists
 from quintet.components.sph_fluid.params import SphFluidParams
@@ -51,6 +52,9 @@ class SphFluid(Component):
         self.team, self.constants = Team(resources.threads), constants(params)
         self._notes = list(params.notes)
         self.state, self.samples = build.state(params), Samples()
+        self.open_boundaries = features.open_boundaries(params)
+        self.open_boundaries.start(self.state)
+        self.items_vary = bool(params.boundary.inflow)
         write_pressure(self.constants, self.state.position_density, self.state.velocity_pressure)
         self.all_ranks, self.symmetry = features.ranks(params, resources)
         self.frame = features.frame(params, self.all_ranks)
@@ -88,11 +92,12 @@ class SphFluid(Component):
         """Refuse bodies that begin out of place; remove fluid inside them, where a scene asks."""
         if not len(self.samples.volume):
             return
-        features.refuse_misplaced(self.params, self.samples.body, fields["surface.position"])
+        places = self.symmetry.wrapped_samples(fields)["surface.position"]
+        features.refuse_misplaced(self.params, self.samples.body, places)
         is_begun = len(self.state.reference) > 0  # from another run, which has removed it
         if self.params.remove_inside_bodies and not is_begun:
             self._notes += features.remove_inside_bodies(
-                self.state, self.samples, fields["surface.position"], self.params
+                self.state, self.samples, places, self.params
             )
 
     def stable_dt(self) -> float:
@@ -113,6 +118,7 @@ class SphFluid(Component):
         if len(self.samples.volume):
             if self.params.dimensions == 2:
                 fields = in_plane(fields, self.params)
+            fields = self.symmetry.wrapped_samples(fields)
             self.samples.move(self.state, fields)
             self.all_ranks.follow_samples(fields)
             self.boundary.follow_samples(self.state, fields)
@@ -125,14 +131,17 @@ class SphFluid(Component):
         self.all_ranks.begin_step()
         if self.lists.need_rebuild(self.state, self.boundary, dt):
             diagnostics.refuse_dense(self.state, self.params, self.all_ranks)
+            self.symmetry.wrap(self.state)
+            self.open_boundaries.renew(self.state)
             self.lists.sort(self.state)
+            refuse_many_lost(self.state, self.params)
             self._list()
         if self.filter and self.filter.is_due(self.state):
             self.symmetry.write_images(self.state)
             self.filter.apply(self.state, self.lists.arrays, self.team)
         rows, rate = self.boundary.rows_with_density_rate(self.state), self.pairs.rates.rate
         if self.state.steps % judgement.EVERY == 0:
-            isolated = not len(self.samples.volume) and self.params.boundary.stands_still
+            isolated = not len(self.samples.volume) and self.params.boundary.is_still
             judgement.note(self.state, self.params, self.totals(), isolated, self.all_ranks)
         others = (self.team, self.films, self.all_ranks)
         apply = partial(self.pairs.apply_forces, self.state, self.lists.arrays, dt, *others)
@@ -159,6 +168,7 @@ class SphFluid(Component):
         self.boundary.resize(self.state, self.symmetry)
         self.pairs.resize(self.state)
         self.films.resize(self.state, self.lists.arrays)
+        self.open_boundaries.resize(self.state)
 
     def _compute_rates(self, dt: float, share: float) -> None:
         """Accelerations and rates of density, of the state as it is at a share of the step."""
@@ -169,6 +179,7 @@ class SphFluid(Component):
             part.write_pressure(self.state, self.lists.arrays, self.team)
         self.symmetry.write_images(self.state)
         self.pairs.compute(self.state, self.lists.arrays, self.team)
+        self.open_boundaries.hold(self.state, self.pairs.rates)
 
     def check(self) -> None:
         """Refuse a particle whose velocity is not finite."""
@@ -192,7 +203,8 @@ class SphFluid(Component):
 
     def load(self, state: Fields) -> None:
         """Come back to a saved state, of this run or of another that it begins from."""
-        diagnostics.refuse_other_particles(state, self.born, self.all_ranks.boundary(self.state))
+        most = math.inf if self.items_vary else self.born
+        diagnostics.refuse_other_particles(state, most, self.all_ranks.boundary(self.state))
         self.state, self.samples.placed = State.load(state), bool(state["placed"])
         self.all_ranks.load(self.state)
         self.samples.find_rows(self.state)

@@ -25,6 +25,26 @@ MIRRORED = {
     "negative_pressure": True,
 }
 GAUGES = {"motion_gauge": True, "front_gauge": "x", "pressure_gauges": [[0.1, 0.1, 0.1]]}
+CHANNEL: dict[str, Any] = {
+    "spacing": 0.05,
+    "sound_speed": 20.0,
+    "dimensions": 2,
+    "gravity": [0.0, 0.0, 0.0],
+    "negative_pressure": True,
+    "fluid": [{"shape": "box", "lowest": [0.0, 0.0, 0.0], "highest": [1.5, 1.0, 0.4]}],
+    "boundary": {
+        "walls": {"lowest": [0.0, 0.0, 0.0], "highest": [1.5, 1.0, 0.4]},
+        "open_faces": ["x-", "x+"],
+        "inflow": [{"face": "x-", "speed": 2.0}],
+        "outflow": [{"face": "x+"}],
+    },
+    "initial": {"velocity": [2.0, 0.0, 0.0]},
+    "gauges": {
+        "mass_gauge": True,
+        "velocity_gauges": [[0.75, 0.5, 0.2]],
+        "discharge_gauges": [0.75],
+    },
+}
 PLACES = np.array([[0.1, 0.1, -0.05], [0.15, 0.1, -0.05]])  # (2, 3) m, of the samples
 
 
@@ -33,12 +53,17 @@ def cases() -> tuple[ConformCase, ...]:
     twice = {**DROP, "integration": "symplectic"}
     box = {"shape": "box", "lowest": [0.0, 0.0, 0.0], "highest": [0.2, 1.0, 0.2]}
     slab = {**DROP, "dimensions": 2, "fluid": [box]}
+    whole = {"walls": DROP["fluid"][0] | {"highest": [0.4, 0.4, 0.4]}, "periodic": ["x"]}
+    sides = ["y-", "y+", "z-", "z+"]
+    turning = {**DROP, "boundary": {**DROP["boundary"], **whole, "open_faces": sides}}
     return (
         _case("drop", DROP),
         _case("drop, mirrored walls and films", {**DROP, **MIRRORED}, mirror=True),
         _case("drop, symplectic, with gauges", {**twice, "gauges": GAUGES}),
         _case("drop in two dimensions", slab, volume=2.5e-3),
         ConformCase("drop in a tank that rolls", {**DROP, "boundary": ROLLING}, dt=1e-4),
+        _case("drop in a tank that repeats", turning | {"gauges": {"mass_gauge": True}}),
+        ConformCase("channel with inflow and outflow", CHANNEL, dt=1e-4, still=False),
     )
 
 

@@ -6,6 +6,9 @@ import numpy as np
 
 from quintet.components.shared.finite_items import require_finite_items
 from quintet.components.sph_fluid.laws import TAIT, Constants
+from quintet.components.sph_fluid.mass_balance.losses import balance
+from quintet.components.sph_fluid.mass_balance.sums import without_buffers
+from quintet.components.sph_fluid.open_boundaries.crossings import potential_of_crossings
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.ranks.method import Ranks
 from quintet.components.sph_fluid.state import Array, State, Whole
@@ -33,14 +36,17 @@ def totals(state: State, params: SphFluidParams, constants: Constants, ranks: Ra
         x * g[0] + y * g[1] + z * g[2],
         _elastic(state.position_density[rows, 3], params, constants),
     ]
+    count, columns = without_buffers(state, ranks.fluid(state), columns)
     sums = mass * ranks.sums(state, columns)
     return Totals(
-        mass=mass * ranks.fluid(state),
+        mass=mass * count,
         momentum=sums[:3],
         angular_momentum=sums[3:6],
         kinetic=0.5 * float(sums[6]),
-        potential=-float(sums[7]),
+        potential=-float(sums[7]) + potential_of_crossings(state, params, mass),
         internal=float(sums[8]),
+        work=mass * state.carried,
+        mass_balance={reason: mass * count for reason, count in balance(state, params).items()},
     )
 
 
@@ -123,7 +129,7 @@ def _worst(state: State, spacing: float, dt: float) -> int:
     return int(np.argmax(speed) if fast else np.argmin(position[:, 3]))
 
 
-def refuse_other_particles(saved: Fields, fluid: int, boundary: int) -> None:
+def refuse_other_particles(saved: Fields, fluid: float, boundary: int) -> None:
     """Refuse a state of another fluid, or of other walls and surface samples.
 
     Particles may have left the domain since the start: those that are there count.
@@ -132,7 +138,7 @@ def refuse_other_particles(saved: Fields, fluid: int, boundary: int) -> None:
     walls = len(saved["sample"])
     if there > fluid or born > fluid or walls != boundary:
         raise SceneError(
-            f"the state that it begins from must be of its {fluid} fluid and {boundary} wall and "
+            f"the state that it begins from must be of its {fluid:g} fluid and {boundary} wall and "
             f"surface particles; found {there} and {walls}. Make fluid, walls and bodies as they "
             "were in that run."
         )

@@ -14,6 +14,7 @@ from quintet.components.sph_fluid.boundary.samples import Samples
 from quintet.components.sph_fluid.boundary.symmetry_planes import NoSymmetry, SymmetryPlanes
 from quintet.components.sph_fluid.integration.method import Integration
 from quintet.components.sph_fluid.motion.frame import Frame, StillFrame
+from quintet.components.sph_fluid.open_boundaries.method import NoOpenBoundaries, OpenBoundaries
 from quintet.components.sph_fluid.pairs.precision import DoublePrecision, Precision
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.ranks.method import Ranks
@@ -94,13 +95,28 @@ def ranks(params: SphFluidParams, resources: Resources) -> tuple[Ranks, Symmetry
 
 
 def symmetry_planes(params: SphFluidParams) -> SymmetryPlanes:
-    """Planes of symmetry, if there are any."""
+    """Planes of symmetry, or axes along which the tank repeats, if there are any."""
+    if params.boundary.periodic:
+        # Left out of scenes whose tank does not repeat.
+        from quintet.components.sph_fluid.open_boundaries.periodic import PeriodicImages
+
+        return PeriodicImages(params)
     if not params.boundary.symmetry:
         return NoSymmetry()
     # Left out of scenes without planes of symmetry.
     from quintet.components.sph_fluid.boundary.symmetry import Symmetry
 
     return Symmetry(params)
+
+
+def open_boundaries(params: SphFluidParams) -> OpenBoundaries:
+    """Faces through which fluid comes and goes, if there are any."""
+    if not (params.boundary.inflow or params.boundary.outflow):
+        return NoOpenBoundaries()
+    # Left out of scenes whose fluid neither comes nor goes.
+    from quintet.components.sph_fluid.open_boundaries.flow import Flow
+
+    return Flow(params)
 
 
 def lubrication_films(params: SphFluidParams, samples: Samples, ranks: Ranks) -> Films:
@@ -205,8 +221,7 @@ def gauges(
     params: SphFluidParams, symmetry: SymmetryPlanes, ranks: Ranks, frame: Frame
 ) -> "Gauges | None":
     """What is measured."""
-    asked = params.gauges
-    if not (asked.pressure_gauges or asked.level_gauges or asked.front_gauge or asked.motion_gauge):
+    if not params.gauges.any_on:
         return None
     # Left out of scenes without gauges.
     from quintet.components.sph_fluid.gauges.gauges import Gauges

@@ -40,6 +40,8 @@ class SphFluidParams:
         Boxes and other shapes full of fluid.
     initial
         Velocity and density of the fluid at the start, where it is not at rest.
+    lost_limit : 1
+        Share of the fluid that may be lost: more, and the run ends. Without it any may.
     remove_inside_bodies
         Whether fluid that is inside joined bodies at the start is removed; with mdbc.
     dimensions
@@ -113,6 +115,7 @@ class SphFluidParams:
     sound_speed: Positive
     fluid: tuple[FluidRegion, ...] = ()
     initial: InitialFields | None = None
+    lost_limit: Fraction | None = None
     remove_inside_bodies: bool = False
     dimensions: Literal[2, 3] = 3
     kernel: Literal["cubic", "wendland"] = "cubic"
@@ -141,6 +144,7 @@ class SphFluidParams:
         checks.check_boxes(self.fluid, spacing)
         check_mass(self.fluid, spacing, dimensions)
         checks.check_walls(boundary, self.fluid, spacing, dimensions)
+        checks.check_lost_limit(self.lost_limit, boundary)
         checks.check_obstacles(boundary, self.fluid, spacing, dimensions)
         checks.check_sound(self.sound_speed, self.hydrostatic_gravity, self.depth)
         if dimensions == 2:
@@ -148,6 +152,10 @@ class SphFluidParams:
             checks.check_slab([*self.extents, *walls, *boundary.solids], self.gravity)
         apart = 3.0 * self.smoothing_length
         checks.check_symmetry(boundary, dimensions, self.gravity, apart, spacing)
+        if boundary.periodic:
+            self._check_periodic(apart)
+        if boundary.inflow or boundary.outflow:
+            self._check_flow()
         checks.check_method(boundary, dimensions)
         if boundary.motion is not None:
             # Left out of scenes whose tank stands still.
@@ -168,6 +176,27 @@ class SphFluidParams:
         if self.wave is not None:
             self.wave.check(self.boxes, self.gravity)
             checks.check_wave_resolution(self.depth, spacing)
+
+    def _check_flow(self) -> None:
+        # Left out of scenes whose fluid neither comes nor goes.
+        from quintet.components.sph_fluid.setup.inflow_outflow import check_buffers, check_flow
+
+        edge = self.boundary
+        check_flow(edge.inflow, edge.outflow, edge.tank, edge.open_faces, self.dimensions)
+        assert edge.tank is not None
+        faces = [each.face for each in edge.inflow] + [each.face for each in edge.outflow]
+        check_buffers(faces, edge.tank, edge.solids, self.spacing, self.smoothing)
+
+    def _check_periodic(self, apart: float) -> None:
+        # Left out of scenes whose tank does not repeat.
+        from quintet.components.sph_fluid.setup.periodic_checks import check_periodic
+
+        check_periodic(self.boundary, self.dimensions, self.gravity, apart, self.spacing)
+        if self.gauges.front_gauge in self.boundary.periodic:
+            raise ValueError(
+                "gauges.front_gauge must not lie along an axis on which the tank repeats, where "
+                f"nothing is furthest; found {self.gauges.front_gauge}. Remove it."
+            )
 
     def _check_methods(self) -> None:
         """Options are asked for with what they need."""

@@ -18,6 +18,8 @@ from quintet.interfaces.ports import (
 
 PRESSURE = Port("pressure_gauge", (Field("pressure", (), "Pa"),))
 LEVEL = Port("level_gauge", (Field("height", (), "m"),))
+VELOCITY_GAUGE = Port("velocity_gauge", (Field("velocity", (3,), "m/s"),))
+DISCHARGE = Port("discharge_gauge", (Field("discharge", (), "m3/s"),))
 FRONT = Port("front_gauge", (Field("position", (), "m"),))
 MOTION = Port(
     "motion_gauge",
@@ -26,6 +28,16 @@ MOTION = Port(
         Field("kinetic", (), "J"),
         Field("potential", (), "J"),  # of gravity, zero at the origin
         Field("centre", (3,), "m"),  # of mass
+    ),
+)
+MASS = Port(
+    "mass_gauge",
+    (
+        Field("mass", (), "kg"),  # there now
+        Field("entered", (), "kg"),  # by inflows
+        Field("left", (), "kg"),  # by outflows, or back into inflows
+        Field("lost", (), "kg"),  # far outside of the tank, or removed inside bodies
+        Field("imbalance", (), "kg"),  # there, less what that at the start and these come to
     ),
 )
 # Static field of the samples of surfaces, from links that choose what presses on them: 0 what does
@@ -57,8 +69,11 @@ def gauges(params: SphFluidParams) -> tuple[Port, ...]:
     switched = (
         (PRESSURE, bool(params.gauges.pressure_gauges)),
         (LEVEL, bool(params.gauges.level_gauges)),
+        (VELOCITY_GAUGE, bool(params.gauges.velocity_gauges)),
+        (DISCHARGE, bool(params.gauges.discharge_gauges)),
         (FRONT, params.gauges.front_gauge is not None),
         (MOTION, params.gauges.motion_gauge),
+        (MASS, params.gauges.mass_gauge),
     )
     return tuple(port for port, on in switched if on)
 

@@ -29,17 +29,32 @@ class State:
     # (n + boundary, 3); (0, 3): there is none yet
     mirror_point: Array  # (boundary, 3) m, of walls and samples; (0, 3) without mdbc
     identity: Whole  # (fluid,) the number each fluid particle was born with
+    exit_face: Whole  # (fluid,) number of the face through which it left the tank, from 1; 0 inside
+    # of it; (0,) without a tank
+    role: Whole  # (fluid,) number of the buffer that holds it, from 1: inflows, then outflows; 0
+    # for fluid; (0,) without any
     sample: Whole  # (boundary,) row in the port `surface`; -1 for walls
     force: Array  # (samples, 3) N, mean over the last step
     film: Array  # (samples, 3) of films in narrow gaps: pressure [Pa], full share, width [m] or 0
     # where there is none; (0, 3) where they are not wanted
     judged: Array  # (10,) what `judgement` remembers
+    lost_through: Whole  # (6,) particles that left the domain, by face of the tank
+    first_lost: Array  # (5,) of the first of these: identity, number of the face from 0, and
+    # x, y, z [m]; (0,) if there is none
+    passed: (
+        Whole  # (buffers,) particles that entered the fluid by each inflow, or left it by outflows
+    )
+    crossings: Whole  # (3,) periods that particles were brought back along each axis, in all
     largest_acceleration: float = 0.0  # m/s2, of the last step
     largest_approach: float = 0.0  # 1/s, largest |u·r|/(r²+0.01h²) of the last step
     moved: float = 0.0  # m, furthest that a fluid particle is from its reference
     last_dt: float = 0.0  # s
     steps: int = 0
-    lost: int = 0  # particles that left the domain
+    born: int = 0  # fluid particles that there ever were, with those of buffers
+    at_start: int = 0  # fluid particles
+    carried: float = 0.0  # J/kg, energy of particles that entered, less that of those that left
+    returned: int = 0  # particles that left the fluid into an inflow
+    removed: int = 0  # particles inside bodies at the start
 
     @classmethod
     def empty(cls, fluid: int, boundary: int) -> "State":
@@ -54,10 +69,18 @@ class State:
             reference=np.zeros((0, 3)),
             mirror_point=np.zeros((0, 3)),
             identity=np.arange(fluid),
+            exit_face=np.zeros(0, np.int64),
+            role=np.zeros(0, np.int64),
             sample=np.full(boundary, -1),
             force=np.zeros((0, 3)),
             film=np.zeros((0, 3)),
             judged=np.zeros(10),
+            lost_through=np.zeros(6, np.int64),
+            first_lost=np.zeros(0),
+            passed=np.zeros(0, np.int64),
+            crossings=np.zeros(3, np.int64),
+            born=fluid,
+            at_start=fluid,
         )
 
     @property
@@ -69,6 +92,11 @@ class State:
     def particles(self) -> int:
         """Number of fluid and boundary particles, without images."""
         return len(self.previous_density_rate)
+
+    @property
+    def lost(self) -> int:
+        """Number of particles that left the domain."""
+        return int(self.lost_through.sum())
 
     def keep(self, fluid: Whole, boundary: Whole) -> None:
         """Keep these rows of the fluid and of the boundary, in this order; all else goes."""
@@ -82,6 +110,10 @@ class State:
         if len(self.minus_rho_div_u):
             self.minus_rho_div_u = self.minus_rho_div_u[rows]
         self.identity, self.sample = self.identity[fluid], self.sample[boundary]
+        if len(self.exit_face):
+            self.exit_face = self.exit_face[fluid]
+        if len(self.role):
+            self.role = self.role[fluid]
         if len(self.mirror_point):
             self.mirror_point = self.mirror_point.take(boundary, axis=0)
 

@@ -12,6 +12,7 @@ from quintet.components.shared.symmetry import Plane, SymmetryImages, neighbours
 from quintet.components.shared.threads import Team
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.state import Array, State
+from quintet.interfaces.component import Fields
 
 
 class Symmetry:
@@ -51,6 +52,13 @@ class Symmetry:
         vectors = [state.velocity_pressure[rows]]
         vectors += [state.acceleration] if len(state.acceleration) else []
         self.images.reflect_crossed(state.position_density[rows], *vectors)
+
+    def wrap(self, state: State) -> None:
+        """Nothing to do: nothing repeats."""
+
+    def wrapped_samples(self, fields: Fields) -> Fields:
+        """Return them as they are."""
+        return fields
 
     def require_before(self, samples: Array) -> None:
         """Refuse samples (samples, 3) m behind a plane."""

@@ -1,4 +1,4 @@
-"""What a fluid asks of its planes of symmetry, and a fluid without any."""
+"""What a fluid asks of images: in planes of symmetry, or a period away; a fluid without any."""
 
 from typing import Protocol
 
@@ -8,10 +8,11 @@ from numpy.typing import NDArray
 from quintet.components.shared.search.neighbours import NeighbourLists, neighbours_within
 from quintet.components.shared.threads import Team
 from quintet.components.sph_fluid.state import Array, State
+from quintet.interfaces.component import Fields
 
 
 class SymmetryPlanes(Protocol):
-    """Faces of the tank behind which all is mirrored."""
+    """Faces of the tank behind which all is mirrored, or goes on from the opposite face."""
 
     def neighbours(
         self, state: State, reach: float, team: Team, query_points: Array | None,
@@ -30,6 +31,12 @@ class SymmetryPlanes(Protocol):
 
     def reflect_crossed(self, state: State) -> None:
         """Bring back fluid that passed a plane."""
+
+    def wrap(self, state: State) -> None:
+        """Bring back fluid that passed a face of a tank that repeats, before lists are made."""
+
+    def wrapped_samples(self, fields: Fields) -> Fields:
+        """Samples of bodies where they are in a tank that repeats."""
 
     def require_before(self, samples: Array) -> None:
         """Refuse samples (samples, 3) m behind a plane."""
@@ -60,6 +67,13 @@ class NoSymmetry:
 
     def reflect_crossed(self, state: State) -> None:
         """Nothing to do: there is no plane to pass."""
+
+    def wrap(self, state: State) -> None:
+        """Nothing to do: nothing repeats."""
+
+    def wrapped_samples(self, fields: Fields) -> Fields:
+        """Return them as they are."""
+        return fields
 
     def require_before(self, samples: Array) -> None:
         """Nothing to do: there is no plane to be behind."""

@@ -19,9 +19,9 @@ The front is half a spacing ahead of the furthest particle with 1/(V W(0)) neigh
 
 import math
 from functools import partial
+from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from quintet.components.shared.search.neighbours import Lists
 from quintet.components.shared.smoothing.cubic_spline import SUPPORT
@@ -29,11 +29,17 @@ from quintet.components.shared.smoothing.smoothing import kernel
 from quintet.components.sph_fluid.boundary.symmetry_planes import SymmetryPlanes
 from quintet.components.sph_fluid.constants import constants
 from quintet.components.sph_fluid.gauges.kernels import add_around, fill_columns, furthest
+from quintet.components.sph_fluid.gauges.nearness import near_places
+from quintet.components.sph_fluid.mass_balance.sums import without_buffers
 from quintet.components.sph_fluid.motion.frame import Frame
+from quintet.components.sph_fluid.open_boundaries.crossings import potential_of_crossings
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.ranks.method import Ranks
 from quintet.components.sph_fluid.state import Array, State
 from quintet.interfaces.component import Fields
+
+if TYPE_CHECKING:
+    from quintet.components.sph_fluid.gauges.flow import FlowGauges
 
 FULL = 0.85  # of the room that walls leave: so much is filled where there is but fluid
 FINE = 0.25  # spacings between the heights at which the share of volume is looked at
@@ -50,6 +56,7 @@ class Gauges:
     ) -> None:
         self.params, self.constants, self.ranks = params, constants(params), ranks
         self.frame = frame
+        self.reach = SUPPORT * self.constants.smoothing.length  # m
         self.points = np.array(params.gauges.pressure_gauges).reshape(-1, 3)  # (m, 3) m
         self.spots = np.array(params.gauges.level_gauges).reshape(-1, 2)  # (m, 2) m
         if params.dimensions == 2:
@@ -63,6 +70,7 @@ class Gauges:
         boxes = [walls] if walls else params.extents
         self.floor = min(box[0][2] for box in boxes)  # m
         volume = self.constants.mass / self.constants.density
+        self.flow = _flow_gauges(params, symmetry, ranks)
         self.lone = volume * float(kernel(0.0, self.constants.smoothing))  # 1, V W(0)
 
     def read(self, state: State, lists: Lists) -> Fields:
@@ -76,12 +84,16 @@ class Gauges:
             readings["front_gauge.position"] = self._front(state, lists)
         if self.params.gauges.motion_gauge:
             readings |= self._motion(state)
+        if self.flow:
+            readings |= self.flow.read(state)
         return readings
 
     def _pressure(self, state: State) -> Array:
         sums = np.empty((len(self.image_points), 3))
         weight = self.params.density * self.frame.weight_at(self.image_points)
-        position, velocity, split = self.ranks.near(state, partial(self._near, self.image_points))
+        position, velocity, split = self.ranks.near(
+            state, partial(near_places, self.image_points, self.reach)
+        )
         add_around(self.image_points, split, position, velocity, self.constants, weight, sums)
         share, walls, load = sums.reshape(-1, len(self.points), 3).sum(axis=0).T
         least = 0.0 if self.params.boundary.method == "dbc" else FULL * (1.0 - walls)
@@ -92,25 +104,15 @@ class Gauges:
 
     def _height(self, state: State) -> Array:
         z, spacing = state.position_density[: state.fluid, 2], self.params.spacing
-        reach, rise = SUPPORT * self.constants.smoothing.length, FINE * spacing
+        reach, rise = self.reach, FINE * spacing
         highest, depth = self.ranks.greatest(float(z.max()), float(-z.min()))
         bottom = -depth - reach
         count = math.ceil((highest + reach - bottom) / rise) + 1
         share = np.empty((len(self.above), count))
-        position, _, split = self.ranks.near(state, partial(self._near, self.above))
+        position, _, split = self.ranks.near(state, partial(near_places, self.above, self.reach))
         fill_columns(self.above, bottom, rise, split, position, self.constants, share)
         whole = share.reshape(-1, len(self.spots), count).sum(axis=0)
         return np.array([self._surface(row, bottom, rise) for row in whole])
-
-    def _near(self, places: Array, points: Array) -> NDArray[np.bool_]:
-        """Whether points (n, 3 or more) m are near to one of some places (m, 2 or 3) m."""
-        reach, near = SUPPORT * self.constants.smoothing.length, np.zeros(len(points), bool)
-        for place in places:
-            beside = np.ones(len(points), bool)
-            for axis in range(len(place)):
-                beside &= np.abs(points[:, axis] - place[axis]) <= reach
-            near |= beside
-        return near
 
     def _surface(self, share: Array, bottom: float, rise: float) -> float:
         most = min(1.0, float(share.max()))
@@ -144,13 +146,30 @@ class Gauges:
         x, y, z = state.position_density[: state.fluid, :3].T
         u, v, w = state.velocity_pressure[: state.fluid, :3].T
         squares = u * u + v * v + w * w
-        sums, count = self.ranks.sums(state, [x, y, z, squares]), self.ranks.fluid(state)
+        count, columns = without_buffers(state, self.ranks.fluid(state), [x, y, z, squares])
+        sums = self.ranks.sums(state, columns)
         (fastest,) = self.ranks.greatest(float(squares.max()))
         particle_mass = self.constants.mass * self.params.slab_thickness  # kg
         centre, mass = sums[:3] / count, particle_mass * count
+        deeper = potential_of_crossings(state, self.params, particle_mass)
         return {
             "motion_gauge.speed": np.sqrt([fastest]),
             "motion_gauge.kinetic": 0.5 * particle_mass * sums[3:],
-            "motion_gauge.potential": np.array([-mass * float(centre @ self.params.gravity)]),
+            "motion_gauge.potential": np.array(
+                [-mass * float(centre @ self.params.gravity) + deeper]
+            ),
             "motion_gauge.centre": centre[np.newaxis],
         }
+
+
+def _flow_gauges(
+    params: SphFluidParams, symmetry: SymmetryPlanes, ranks: Ranks
+) -> "FlowGauges | None":
+    """Gauges of a flow, if any is switched on."""
+    asked = params.gauges
+    if not (asked.velocity_gauges or asked.discharge_gauges or asked.mass_gauge):
+        return None
+    # Left out of scenes without them.
+    from quintet.components.sph_fluid.gauges.flow import FlowGauges
+
+    return FlowGauges(params, symmetry, ranks)

@@ -21,6 +21,8 @@ def fluid_columns(state: State) -> Columns:
     }
     if len(state.acceleration):
         columns["acceleration"] = state.acceleration
+    if len(state.exit_face):
+        columns["exit_face"] = state.exit_face
     if len(state.minus_rho_div_u):
         columns["minus_rho_div_u"] = state.minus_rho_div_u[rows]
     return columns
@@ -49,7 +51,8 @@ def taken(columns: Columns, rows: Whole) -> Columns:
 
 def put(state: State, fluid: Columns, boundary: Columns) -> None:
     """Put other rows in place of those that a state has."""
-    alone = {"identity": fluid, "acceleration": fluid, "sample": boundary, "mirror_point": boundary}
+    alone = {name: fluid for name in ("identity", "exit_face", "acceleration")}
+    alone |= {name: boundary for name in ("sample", "mirror_point")}
     for name, columns in alone.items():
         if name in columns:
             setattr(state, name, columns[name])

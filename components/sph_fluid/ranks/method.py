@@ -11,8 +11,6 @@ from quintet.components.sph_fluid.state import Array, State, Whole
 from quintet.interfaces.component import Fields
 from quintet.interfaces.errors import StepError
 
-STRAY = 0.5  # of the tank's longest edge: how far outside of it a particle is lost
-
 
 class NearRows(NamedTuple):
     """Rows of the fluid and of the boundary that are near to something, in their order."""
@@ -80,18 +78,6 @@ class Ranks(Protocol):
 
     def near(self, state: State, is_near: Callable[[Array], NDArray[np.bool_]]) -> NearRows:
         """Rows of all ranks that are near, or more, on rank 0; on others none."""
-
-
-def in_domain(points: Array, walls: Bounds | None) -> Whole:
-    """Rows (k,) of points (n, 3 or more) m that are in the tank or not far outside of it."""
-    inside = np.ones(len(points), bool)
-    if walls is not None:
-        low, high = np.array(walls)
-        stray = STRAY * float((high - low).max())
-        for axis in range(3):
-            along = points[:, axis]
-            inside &= (along > low[axis] - stray) & (along < high[axis] + stray)
-    return np.flatnonzero(inside)
 
 
 def refuse_none(left: int) -> None:

@@ -8,7 +8,13 @@ from numpy.typing import NDArray
 from quintet.components.shared.exact_sums import bounds, sum_parts, total
 from quintet.components.shared.geometry.bounds import Bounds
 from quintet.components.shared.search.cells import grid_around, sorted_into
-from quintet.components.sph_fluid.ranks.method import NearRows, in_domain, places, refuse_none
+from quintet.components.sph_fluid.mass_balance.losses import (
+    book,
+    first_of,
+    lost_by_face,
+    note_exits,
+)
+from quintet.components.sph_fluid.ranks.method import NearRows, places, refuse_none
 from quintet.components.sph_fluid.state import Array, State, Whole
 from quintet.interfaces.component import Fields
 
@@ -27,12 +33,14 @@ class OneRank:
     def sort(self, state: State, reach: float, walls: Bounds | None) -> None:
         """Bring particles that are near into near rows; drop those that left the domain."""
         split = state.fluid
-        inside = in_domain(state.position_density[:split], walls)
+        is_lost = note_exits(state, walls)
+        inside = np.flatnonzero(~is_lost)
         refuse_none(len(inside))
+        if len(inside) < split:
+            book(state, lost_by_face(state, is_lost), first_of(state, is_lost))
         fluid = state.position_density.take(inside, axis=0)
         boundary = state.position_density[split : state.particles]
         grid = grid_around(fluid, reach)
-        state.lost += split - len(inside)
         state.keep(inside[sorted_into(fluid, grid)[2]], sorted_into(boundary, grid)[2])
         state.reference, state.moved = places(state), 0.0
 

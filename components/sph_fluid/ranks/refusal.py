@@ -15,6 +15,9 @@ def refuse_what_needs_one_rank(params: SphFluidParams, ranks: int) -> None:
     edge = params.boundary
     wrong = {
         "boundary.method": (edge.method, edge.method == "potential", "mdbc or dbc"),
+        "boundary.periodic": (edge.periodic, bool(edge.periodic), "empty"),
+        "boundary.inflow": (len(edge.inflow), bool(edge.inflow), "empty"),
+        "boundary.outflow": (len(edge.outflow), bool(edge.outflow), "empty"),
     }
     for key, (value, is_wrong, right) in wrong.items():
         if is_wrong:

@@ -17,6 +17,12 @@ from quintet.components.shared.domain.sorting import cells_around, grid_of_all, 
 from quintet.components.shared.domain.work import Work
 from quintet.components.shared.exact_sums import bounds, sum_parts, total
 from quintet.components.shared.geometry.bounds import Bounds
+from quintet.components.sph_fluid.mass_balance.losses import (
+    book,
+    first_of,
+    lost_by_face,
+    note_exits,
+)
 from quintet.components.sph_fluid.ranks.boundary_order import BoundaryOrder
 from quintet.components.sph_fluid.ranks.groups import (
     boundary_columns,
@@ -24,7 +30,7 @@ from quintet.components.sph_fluid.ranks.groups import (
     put,
     taken,
 )
-from quintet.components.sph_fluid.ranks.method import NearRows, in_domain, places, refuse_none
+from quintet.components.sph_fluid.ranks.method import NearRows, places, refuse_none
 from quintet.components.sph_fluid.state import Array, State, Whole
 from quintet.interfaces.component import Fields
 from quintet.interfaces.errors import SceneError
@@ -73,10 +79,14 @@ class SeveralRanks:
         if not self._shared:
             self._share_out(state)
         fluid, boundary = fluid_columns(state), boundary_columns(state, self._mirrored)
-        inside = in_domain(fluid["position_density"], walls)
+        is_lost = note_exits(state, walls)
+        inside = np.flatnonzero(~is_lost)
         (left,) = self.count(len(inside))
         refuse_none(left)
-        state.lost, self._fluid = state.lost + self._fluid - left, left
+        if left < self._fluid:
+            first = np.concatenate(share(self._communicator, first_of(state, is_lost).ravel()))
+            book(state, self.count(*lost_by_face(state, is_lost)), first.reshape(-1, 5))
+        self._fluid = left
         keys = self._keys.fluid[inside]
         fluid = taken(fluid, inside)
         grid = grid_of_all(self._communicator, fluid["position_density"], reach)

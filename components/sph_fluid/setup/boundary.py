@@ -6,7 +6,8 @@ from typing import ClassVar, Literal
 from quintet.components.shared.geometry.bounds import Bounds
 from quintet.components.shared.geometry.shapes import Box
 from quintet.components.sph_fluid.setup.boundary_meshes import BoundaryMesh
-from quintet.components.sph_fluid.setup.geometry import FACES, Exponent, Face, UprightFace
+from quintet.components.sph_fluid.setup.geometry import FACES, Axis, Exponent, Face, UprightFace
+from quintet.components.sph_fluid.setup.inflow_outflow import Inflow, Outflow
 from quintet.components.sph_fluid.setup.motion import Motion
 from quintet.interfaces.params import Fraction, NotNegative, Positive, Vector, parameters
 
@@ -27,6 +28,13 @@ class Boundary:
         Faces that the tank lacks.
     symmetry
         Upright faces of the tank that are planes of symmetry, without walls.
+    periodic
+        Axes along which the tank repeats: fluid that leaves at one face enters at the opposite one.
+        Gravity along x or y then drives the flow; on one rank.
+    inflow
+        Open faces through which fluid enters; on one rank.
+    outflow
+        Open faces through which fluid leaves; on one rank.
     wall_velocity : m/s
         Velocities of faces that move in their own planes, like belts.
     obstacles
@@ -64,6 +72,9 @@ class Boundary:
     walls: Box | None = None
     open_faces: tuple[Face, ...] = ("z+",)
     symmetry: tuple[UprightFace, ...] = ()
+    periodic: tuple[Axis, ...] = ()
+    inflow: tuple[Inflow, ...] = ()
+    outflow: tuple[Outflow, ...] = ()
     wall_velocity: dict[Face, Vector] = field(default_factory=dict)
     obstacles: tuple[Box, ...] = ()
     meshes: tuple[BoundaryMesh, ...] = ()
@@ -82,19 +93,19 @@ class Boundary:
         return None if self.walls is None else self.walls.bounds
 
     @property
+    def is_still(self) -> bool:
+        """Whether nothing comes or goes, and nothing of the boundary moves."""
+        return not (self.wall_velocity or self.inflow or self.outflow or self.motion)
+
+    @property
     def solids(self) -> tuple[Bounds, ...]:
         """Lowest and highest corners [m] of the obstacles."""
         return tuple(box.bounds for box in self.obstacles)
 
-    @property
-    def stands_still(self) -> bool:
-        """Whether nothing of the boundary moves."""
-        return not self.wall_velocity and self.motion is None
-
     def closed_faces(self, dimensions: int) -> tuple[Face, ...]:
         """Faces at which the tank has wall particles."""
-        sides = ("y-", "y+") if dimensions == 2 else ()
-        return tuple(f for f in FACES if f not in (*self.open_faces, *self.symmetry, *sides))
+        without = {*self.open_faces, *self.symmetry, *(("y-", "y+") if dimensions == 2 else ())}
+        return tuple(f for f in FACES if f not in without and f[0] not in self.periodic)
 
     def around(self, thickness: float) -> Bounds | None:
         """Lowest and highest corner of the tank and of walls so thick [m] at its closed faces."""
@@ -116,4 +127,6 @@ class Boundary:
             return "in two dimensions water cannot flow in from the side"
         if self.symmetry:
             return "films know no planes of symmetry"
+        if self.periodic:
+            return "films know no tanks that repeat"
         return ""

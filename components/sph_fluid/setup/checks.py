@@ -44,6 +44,15 @@ def check_walls(boundary: Boundary, fluid: Fluid, spacing: float, dimensions: in
     _check_wall_velocity(boundary, dimensions)
 
 
+def check_lost_limit(lost_limit: float | None, boundary: Boundary) -> None:
+    """Particles are lost outside of a tank alone."""
+    if lost_limit is not None and boundary.tank is None:
+        raise ValueError(
+            "lost_limit needs boundary.walls, for a particle is lost far outside of the tank; "
+            f"found lost_limit {lost_limit:g} and no walls. Give walls, or remove lost_limit."
+        )
+
+
 def _check_wall_velocity(boundary: Boundary, dimensions: int) -> None:
     closed = boundary.closed_faces(dimensions)
     for face, velocity in boundary.wall_velocity.items():

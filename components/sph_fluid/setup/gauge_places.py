@@ -5,7 +5,7 @@ from typing import ClassVar
 
 from quintet.components.sph_fluid.setup.boundary import Boundary
 from quintet.components.sph_fluid.setup.geometry import ROUNDING, Axis, Spot
-from quintet.interfaces.params import Vector, parameters
+from quintet.interfaces.params import Number, Vector, parameters
 
 
 @parameters
@@ -18,18 +18,34 @@ class Gauges:
         Points at which the pressure is given [Pa].
     level_gauges : m
         x and y of the verticals on which the surface's height is given [m].
+    velocity_gauges : m
+        Points at which the fluid's velocity is given [m/s].
+    discharge_gauges : m
+        Places along x of sections across the flow, through which the discharge is given [m3/s].
     front_gauge
         Axis along which the position of the furthest fluid is given [m].
     motion_gauge
         Whether the largest speed [m/s], energies [J] and the centre of mass [m] are given.
+    mass_gauge
+        Whether the masses [kg] are given that are there, entered, left and were lost or removed.
     """
 
     RENAMED: ClassVar = {"front": "front_gauge"}
 
     pressure_gauges: tuple[Vector, ...] = ()
     level_gauges: tuple[Spot, ...] = ()
+    velocity_gauges: tuple[Vector, ...] = ()
+    discharge_gauges: tuple[Number, ...] = ()
     front_gauge: Axis | None = None
     motion_gauge: bool = False
+    mass_gauge: bool = False
+
+    @property
+    def any_on(self) -> bool:
+        """Whether anything is measured."""
+        places = self.pressure_gauges or self.level_gauges
+        flow = self.velocity_gauges or self.discharge_gauges
+        return bool(places or flow or self.front_gauge or self.motion_gauge or self.mass_gauge)
 
     def check(self, boundary: Boundary, spacing: float, dimensions: int) -> None:
         """Refuse gauges beyond a wall of the tank or inside an obstacle."""
@@ -50,6 +66,10 @@ class Gauges:
     def _points(self) -> Iterator[tuple[str, tuple[float, ...]]]:
         for number, point in enumerate(self.pressure_gauges):
             yield f"pressure_gauges[{number}]", point
+        for number, point in enumerate(self.velocity_gauges):
+            yield f"velocity_gauges[{number}]", point
+        for number, place in enumerate(self.discharge_gauges):
+            yield f"discharge_gauges[{number}]", (place,)
         for number, spot in enumerate(self.level_gauges):
             yield f"level_gauges[{number}]", spot
 

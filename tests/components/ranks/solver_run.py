@@ -65,6 +65,8 @@ class SolverRun:
         if len(ranks) and WORLD.rank == 0:
             assert len(ranks) == len(view["points"])
             assert set(ranks) == set(range(WORLD.size))
+        totals = asdict(solver.totals())
+        masses = totals.pop("mass_balance")
         warned = {**solver.warnings(), **solver.final_warnings()}
         return {
             **outputs_of(solver),
@@ -73,8 +75,9 @@ class SolverRun:
             **{f"described {name}": array for name, array in solver.describe().items()},
             **{
                 f"total {name}": np.array("unknown" if total is None else total)
-                for name, total in asdict(solver.totals()).items()
+                for name, total in totals.items()
             },
+            **{f"mass {reason}": np.array(mass) for reason, mass in masses.items()},
             "warned": np.array(sorted(warned.items()), dtype=str),
             "notes": np.array(solver.notes(), dtype=str),
             "stable step": np.array(solver.stable_dt()),

@@ -1,0 +1,1 @@
+"""What came to a fluid and what left it, and why."""

@@ -1,0 +1,1 @@
+"""Fluid that comes and goes: inflows, outflows, and tanks that repeat."""

@@ -1,0 +1,152 @@
+"""A fluid that repeats along axes of its tank; imported only by a scene that asks.
+
+What is near one of two opposite faces acts from behind the other too: each row nearer to a face
+than pairs act has an image a period away. Images stand behind all other rows, are found with the
+neighbour lists and written before each loop over pairs, as those in planes of symmetry; near an
+edge between two axes images have images. A particle that passed a face goes on from the opposite
+one when lists are made again; until then its images act for it.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from quintet.components.shared.search.neighbours import NeighbourLists
+from quintet.components.shared.symmetry import neighbours_and_images
+from quintet.components.shared.threads import Team
+from quintet.components.sph_fluid.params import SphFluidParams
+from quintet.components.sph_fluid.state import Array, State, Whole
+from quintet.interfaces.component import Fields
+
+# Lists' reaches from a face within which rows have images, where query points of bodies and
+# obstacles may lie behind a face: they are at most two kernels away from their particles.
+FURTHER = 3.0
+
+
+class Period(NamedTuple):
+    """An axis along which the tank repeats."""
+
+    axis: int
+    low: float  # m
+    length: float  # m
+
+
+class Shift(NamedTuple):
+    """Images of some rows, a period away."""
+
+    axis: int
+    by: float  # m
+    origin: Whole  # (k,) rows that have images
+    images: slice  # where these stand
+
+
+def periods(params: SphFluidParams) -> list[Period]:
+    """Axes along which a fluid repeats."""
+    if params.boundary.tank is None:
+        return []
+    low, high = params.boundary.tank
+    axes = sorted("xyz".index(axis) for axis in set(params.boundary.periodic))
+    return [Period(axis, low[axis], high[axis] - low[axis]) for axis in axes]
+
+
+class PeriodicImages:
+    """The images of one fluid's rows, from one list of neighbours to the next."""
+
+    def __init__(self, params: SphFluidParams) -> None:
+        self.periods = periods(params)
+        self.has_obstacles = bool(params.boundary.obstacles)
+        self._shifts: list[Shift] = []
+
+    def neighbours(
+        self, state: State, reach: float, team: Team, query_points: Array | None,
+        buffer: NDArray[np.int32],
+    ) -> NeighbourLists:  # fmt: skip
+        """Make room for images, and lists of the fluid, then of the boundary or query points."""
+        rows = state.particles
+        has_bodies = self.has_obstacles or bool((state.sample >= 0).any())
+        points = self._find(state.reference[:rows], reach * (FURTHER if has_bodies else 1.0))
+        is_fluid = np.arange(len(points)) < state.fluid
+        self.write_values(is_fluid, rows)
+        state.position_density = _with_room(state.position_density, rows, len(points))
+        state.velocity_pressure = _with_room(state.velocity_pressure, rows, len(points))
+        self.write_images(state)
+        return neighbours_and_images(
+            points, is_fluid, state.fluid, rows, reach, team, query_points, buffer
+        )
+
+    def _find(self, points: Array, reach: float) -> Array:
+        """Find what has images, nearer to a face than `reach` [m]; points (n + images, 3) m."""
+        self._shifts = []
+        for axis, low, length in self.periods:
+            along, first = points[:, axis], len(points)
+            ends = [(along < low + reach, length), (along >= low + length - reach, -length)]
+            for is_near, by in ends:
+                origin = np.flatnonzero(is_near)
+                shift = Shift(axis, by, origin, slice(first, first + len(origin)))
+                first += len(origin)
+                self._shifts.append(shift)
+                points = np.concatenate([points, _shifted(points[origin], axis, by)])
+        return points
+
+    def write_images(self, state: State) -> None:
+        """Write the images of all particles as they are."""
+        for axis, by, origin, images in self._shifts:
+            state.position_density[images] = state.position_density[origin]
+            state.position_density[images, axis] += by
+            state.velocity_pressure[images] = state.velocity_pressure[origin]
+
+    def write_vectors(self, vectors: Array, rows: int) -> None:
+        """Write the images of vectors (rows + images, 4)."""
+        self.write_values(vectors, rows)
+
+    def write_values(self, values: NDArray[np.generic], rows: int) -> None:
+        """Write the images of values (rows + images, ...)."""
+        for _, _, origin, images in self._shifts:
+            values[images] = values[origin]
+
+    def reflect_crossed(self, state: State) -> None:
+        """Nothing to do: what passed a face has images until lists are made again."""
+
+    def wrap(self, state: State) -> None:
+        """Bring fluid that passed a face back by a period, before lists are made."""
+        for axis, low, length in self.periods:
+            along = state.position_density[: state.fluid, axis]
+            whole = np.floor((along - low) / length)
+            along -= length * whole
+            state.crossings[axis] += int(whole.sum())
+
+    def wrapped_samples(self, fields: Fields) -> Fields:
+        """Samples of bodies where they are in the tank, with their mirror points."""
+        wrapped = dict(fields)
+        places = [name for name in ("surface.position", "surface.mirror") if name in fields]
+        for name in places:
+            wrapped[name] = np.array(fields[name])
+        for axis, low, length in self.periods:
+            along = fields["surface.position"][:, axis]
+            by = length * np.floor((along - low) / length)
+            for name in places:
+                wrapped[name][:, axis] -= by
+        return wrapped
+
+    def require_before(self, samples: Array) -> None:
+        """Nothing to refuse: samples may be anywhere."""
+
+    def all_images(self, points: Array) -> Array:
+        """Points (m, 2 or 3) m, then these a period away along each axis, and at edges."""
+        for axis, _, length in self.periods:
+            if axis < points.shape[1]:
+                sides = [_shifted(points, axis, by) for by in (length, -length)]
+                points = np.concatenate([points, *sides])
+        return points
+
+
+def _shifted(points: Array, axis: int, by: float) -> Array:
+    images = points.copy()
+    images[:, axis] += by
+    return images
+
+
+def _with_room(array: Array, rows: int, count: int) -> Array:
+    """Return the first rows of an array (≥ rows, width), and room for others: (count, width)."""
+    return np.concatenate([array[:rows], np.zeros((count - rows, array.shape[1]))])
