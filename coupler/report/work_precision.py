@@ -1,5 +1,6 @@
 """Work-precision diagram: error against run time, of all refinements of a study."""
 
+import itertools
 import math
 import textwrap
 from collections.abc import Sequence
@@ -19,6 +20,7 @@ COLOURS = {
     "model": "tab:purple",
 }
 PEERS = ("tab:red", "tab:brown", "tab:olive", "tab:cyan")  # other programs, in turn
+MARKERS = "sD^v"  # of their series
 RIGHT = 0.65  # of the logarithmic axis, from where labels stand left of their points
 SMALLEST_SLOPE = 0.02  # of a line to which a triangle is drawn
 
@@ -96,18 +98,24 @@ def _draw(panel: Any, name: str, rows: Sequence[Row], kinds: Row) -> None:
 
 
 def _draw_peer(panel: Any, name: str, peer: Row, colour: str) -> None:
-    """Draw the runs of another program: squares, filled where all it is measured by is met."""
-    rows = [row for row in peer["rows"] if row["errors"].get(name) and row["cpu"] > 0.0]
-    if not rows:
-        return
-    costs, errors = [row["cpu"] for row in rows], [row["errors"][name] for row in rows]
-    label = f"{peer['program']} {peer['version']}".strip()
-    panel.plot(costs, errors, color=colour, linewidth=0.8, linestyle=":", zorder=1)
-    for row, cost, error in zip(rows, costs, errors, strict=True):
-        style = {"markersize": 6, "color": colour, "fillstyle": "full" if row["met"] else "none"}
-        panel.plot(cost, error, "s", label=label, **style)
-        place = {"xytext": (-5, 4), "ha": "right", "textcoords": "offset points"}
-        panel.annotate(row["label"], (cost, error), fontsize=7, color=colour, **place)
+    """Draw the runs of another program, filled where all that measures them is met."""
+    done = [row for row in peer["rows"] if row["errors"].get(name) and row["cpu"] > 0.0]
+    program = f"{peer['program']} {peer['version']}".strip()
+    series = dict.fromkeys(row["series"] for row in peer["rows"])
+    for words, marker in zip(series, itertools.cycle(MARKERS), strict=False):
+        rows = [row for row in done if row["series"] == words]
+        costs, errors = [row["cpu"] for row in rows], [row["errors"][name] for row in rows]
+        panel.plot(costs, errors, color=colour, linewidth=0.8, linestyle=":", zorder=1)
+        label = ", ".join(filter(None, (program, words)))
+        for row, cost, error in zip(rows, costs, errors, strict=True):
+            style = {
+                "markersize": 5,
+                "color": colour,
+                "fillstyle": "full" if row["met"] else "none",
+            }
+            panel.plot(cost, error, marker, label=label, **style)
+            place = {"xytext": (-5, 4), "ha": "right", "textcoords": "offset points"}
+            panel.annotate(row["label"], (cost, error), fontsize=7, color=colour, **place)
 
 
 def _points(

@@ -3,7 +3,6 @@
 import os
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from datetime import date
 from pathlib import Path
 from typing import Any
 
@@ -49,7 +48,6 @@ class Beside:
         label = f"{peer.name}, {run.label}"
         print(f"{label}: in {peer.place(self.series, run)}", flush=True)
         row = peer.row(run, self.series, self.stop, self.keep)
-        row["date"] = date.today().isoformat()
         self.rows.setdefault(peer.name, []).append(row)
         cause = f": {row['cause']}" if row["cause"] else ""
         print(f"{label}: {row['status']}, {row['cpu']:.3g} s of CPU time{cause}", flush=True)

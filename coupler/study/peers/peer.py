@@ -11,6 +11,7 @@ import sys
 import tempfile
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
+from datetime import date
 from pathlib import Path
 from typing import Any
 
@@ -112,7 +113,8 @@ class Peer:
             for file, text in begun["inputs"].items():
                 (fresh / file).parent.mkdir(parents=True, exist_ok=True)
                 (fresh / file).write_text(text)
-            result = {"load": os.getloadavg()[0], **self._command_all(begun, fresh, place, stop)}
+            about = {"load": os.getloadavg()[0], "date": date.today().isoformat()}
+            result = about | self._command_all(begun, fresh, place, stop)
             for curve in self.table.curve:
                 if (fresh / curve.file).is_file():
                     shutil.copyfile(fresh / curve.file, place / curve.file)
@@ -160,8 +162,8 @@ class Peer:
                 "timing": {**timing, "components": {self.name: parts}},
             },
         )
-        more = ("cpu_process", "load", "version", "cause")
-        return row | {name: result.get(name, "") for name in more}
+        more = ("cpu_process", "load", "date", "version", "cause")
+        return row | {name: result.get(name, "") for name in more} | {"series": run.series}
 
     def _outcomes(self, place: Path) -> list[Outcome]:
         """Outcomes of the expectations that its curves serve."""

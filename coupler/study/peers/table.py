@@ -107,10 +107,13 @@ class PeerRunTable:
         Of the run, as the corresponding refinement of the study has it.
     values
         What stands in the place of each ``@name@``.
+    series
+        Of runs that differ in resolution alone; the plot joins them.
     """
 
     label: str
     values: dict[str, Value]
+    series: str = ""
 
 
 @parameters

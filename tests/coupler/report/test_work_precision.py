@@ -64,15 +64,21 @@ def test_it_has_a_legend_a_front_and_triangles_with_their_slope(drawn):
     assert len(front.get_xdata()) == 3
 
 
-def test_other_programs_are_squares_beside_the_front(drawn):
+def test_other_programs_have_marks_of_their_own_beside_the_front(drawn):
     ladder = [row(f"{h} m", h**-2, {"end": h**2, "b": h}, size=h) for h in (0.4, 0.2, 0.1)]
-    runs = [row(f"{n} cells", 0.1 * n, {"end": 1.0 / n}, n > 10) for n in (10, 20)]
-    peers = [{"program": "Toy", "version": "7.1", "rows": [*runs, row("none", 1.0, {})]}]
-    first, second = drawn(ladder, peers=peers).axes
-    squares = [line for line in first.lines if line.get_marker() == "s"]
-    assert [(line.get_xdata()[0], line.get_ydata()[0]) for line in squares] == [(1, 0.1), (2, 0.05)]
-    assert [line.get_fillstyle() for line in squares] == ["none", "full"]
-    assert {line.get_label() for line in squares} == {"Toy 7.1"}
+    runs = [row(f"{n} cells", 0.1 * n, {"end": 1.0 / n}, n > 10) for n in (10, 20, 40)]
+    for run, series in zip(runs, ("", "", "fine"), strict=True):
+        run["series"] = series
+    peers = [{"program": "Toy", "version": "7.1", "rows": runs}]
+    figure = drawn(ladder, peers=peers)
+    first, second = figure.axes
+    points = [line for line in first.lines if line.get_marker() in ("s", "D")]
+    places = [(line.get_xdata()[0], line.get_ydata()[0]) for line in points]
+    assert places == [(1.0, 0.1), (2.0, 0.05), (4.0, 0.025)]
+    assert [line.get_fillstyle() for line in points] == ["none", "full", "full"]
+    assert [line.get_marker() for line in points] == ["s", "s", "D"]
+    words = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert {"Toy 7.1", "Toy 7.1, fine"} <= set(words)
     (front,) = (line for line in first.lines if line.get_label() == "Pareto front")
     assert len(front.get_xdata()) == 3  # of the refinements alone
     assert not [line for line in second.lines if line.get_marker() == "s"]

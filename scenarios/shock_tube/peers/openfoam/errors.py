@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 GAMMA, END, DIAPHRAGM = 1.4, 0.2, 0.5
 LEFT, RIGHT = (1.0, 0.0, 1.0), (0.125, 0.0, 0.1)  # density, velocity, pressure
+HEAT_CAPACITY = 3.5  # at constant pressure, J/(kg K)
 Array = NDArray[np.float64]
 
 
@@ -82,9 +83,12 @@ def main(cells: int, rows: int) -> None:
     velocity = field(last, "U", count)
     x = np.tile((np.arange(cells) + 0.5) / cells, rows)
     right = x > DIAPHRAGM
-    energy = pressure / (GAMMA - 1.0) + 0.5 * density * (velocity**2).sum(axis=1)
-    mass_begun = np.where(right, RIGHT[0], LEFT[0]).mean()
-    energy_begun = np.where(right, RIGHT[2], LEFT[2]).mean() / (GAMMA - 1.0)
+    # OpenFOAM's gas constant is 1 but for some digits of the molar one: its own is taken.
+    constant = float((pressure / (density * field(last, "T", count))).mean())
+    inner = 1.0 / (HEAT_CAPACITY / constant - 1.0)  # gamma - 1
+    energy = pressure / inner + 0.5 * density * (velocity**2).sum(axis=1)
+    mass_begun = np.where(right, RIGHT[0], LEFT[0]).mean() / constant
+    energy_begun = np.where(right, RIGHT[2], LEFT[2]).mean() / inner
     true_density, true_pressure = exact(x, END)
     errors = (
         np.abs(density - true_density).mean(),
