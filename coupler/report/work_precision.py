@@ -114,7 +114,7 @@ def _draw_peer(panel: Any, name: str, peer: Row, colour: str) -> None:
                 "fillstyle": "full" if row["met"] else "none",
             }
             panel.plot(cost, error, marker, label=label, **style)
-            place = {"xytext": (-5, 4), "ha": "right", "textcoords": "offset points"}
+            place = {"xytext": (-5, -10), "ha": "right", "textcoords": "offset points"}
             panel.annotate(row["label"], (cost, error), fontsize=7, color=colour, **place)
 
 
