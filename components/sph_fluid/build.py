@@ -6,8 +6,8 @@ import numpy as np
 
 from quintet.components.shared.geometry.bounds import Bounds
 from quintet.components.shared.geometry.lattice import fill_box
-from quintet.components.sph_fluid.boundary.obstacles import from_meshes, obstacle_points
-from quintet.components.sph_fluid.boundary.walls import wall_points, wall_velocity
+from quintet.components.sph_fluid.boundary.parts import standing
+from quintet.components.sph_fluid.boundary.walls import wall_velocity
 from quintet.components.sph_fluid.laws import TAIT
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.setup.geometry import cells, levels
@@ -21,8 +21,7 @@ FADING = 10.0  # spacings from a wall within which the offsets of rows fade
 def state(params: SphFluidParams) -> State:
     """Initial state: each box under the hydrostatic pressure of the surface above it."""
     boxes = [box_points(box, params) for box in params.boxes]
-    still = [wall_points(params), obstacle_points(params), from_meshes(params)[0]]
-    wall = np.concatenate(still)
+    wall, _ = standing(params)
     pairs = zip(boxes, params.boxes, strict=True)
     dense = [hydrostatic(points, box, params) for points, box in pairs]
     if params.shapes:

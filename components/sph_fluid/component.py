@@ -60,6 +60,7 @@ class SphFluid(Component):
         self.frame = features.frame(params, self.all_ranks)
         self.boundary = features.boundary_method(params, self.samples, self.frame)
         self.boundary.start(self.state)
+        self.pistons = features.pistons(params, self.samples, self.all_ranks)
         self.lists = FluidLists(params, self.samples, self.all_ranks)
         self.pressure_parts = features.pressure_parts(params, self.boundary)
         precision = features.precision(params, self.all_ranks)
@@ -82,18 +83,22 @@ class SphFluid(Component):
             self.frame.refuse_bodies()
             if self.params.dimensions == 2:
                 require_one_metre(self.params)
+        static = self.pistons.join(static)
+        if "surface.volume" in static:
             self.all_ranks.join(static)
             self.samples.join(self.state, static, self.params.density)
             self.boundary.join(self.state, static)
             self.films = features.lubrication_films(self.params, self.samples, self.all_ranks)
             self.films.join(self.state, static)
+            self.pistons.start(self.state, self.boundary)
 
     def prime(self, fields: Fields) -> None:
         """Refuse bodies that begin out of place; remove fluid inside them, where a scene asks."""
-        if not len(self.samples.volume):
+        if not self.pistons.links:
             return
+        body = self.samples.body[: self.pistons.links]
         places = self.symmetry.wrapped_samples(fields)["surface.position"]
-        features.refuse_misplaced(self.params, self.samples.body, places)
+        features.refuse_misplaced(self.params, body, places)
         is_begun = len(self.state.reference) > 0  # from another run, which has removed it
         if self.params.remove_inside_bodies and not is_begun:
             self._notes += features.remove_inside_bodies(
@@ -115,7 +120,7 @@ class SphFluid(Component):
 
     def take(self, fields: Fields) -> None:
         """Put the surface samples where they are in the coming step."""
-        if len(self.samples.volume):
+        if self.pistons.links:
             if self.params.dimensions == 2:
                 fields = in_plane(fields, self.params)
             fields = self.symmetry.wrapped_samples(fields)
@@ -129,6 +134,7 @@ class SphFluid(Component):
         if not self.samples.placed:
             raise OrderError("step: surface samples must be placed first. Call take before it.")
         self.all_ranks.begin_step()
+        self.pistons.place(self.state, self.boundary, dt)
         if self.lists.need_rebuild(self.state, self.boundary, dt):
             diagnostics.refuse_dense(self.state, self.params, self.all_ranks)
             self.symmetry.wrap(self.state)
@@ -160,6 +166,7 @@ class SphFluid(Component):
         state.largest_acceleration, state.largest_approach = fastest, approach
         state.last_dt, state.steps = dt, state.steps + 1
         self.frame.advance(dt)
+        self.pistons.advance(state, dt)
         self.all_ranks.end_step()
 
     def _list(self) -> None:
@@ -193,13 +200,14 @@ class SphFluid(Component):
                 self.symmetry.write_images(self.state)
             outputs.update(self.gauges.read(self.state, self.lists.arrays))
         if wanted & LOADS:
-            outputs["surface_load.force"] = self.state.force.copy()
+            outputs["surface_load.force"] = self.pistons.forces_of_links(self.state).copy()
         return {key: outputs[key] for key in wanted}
 
     def save(self) -> Fields:
         """Copy out all state; the neighbour list is kept as the places it was made from."""
         whole = self.all_ranks.whole(self.state).save()
-        return whole | {"placed": np.array(self.samples.placed)} | self.frame.save()
+        clocks = self.frame.save() | self.pistons.save()
+        return whole | {"placed": np.array(self.samples.placed)} | clocks
 
     def load(self, state: Fields) -> None:
         """Come back to a saved state, of this run or of another that it begins from."""
@@ -211,6 +219,7 @@ class SphFluid(Component):
         self.boundary.load(self.state)
         self.films.load(self.state)
         self.frame.load(state)
+        self.pistons.load(state)
         if len(self.state.reference):
             self._list()
 
@@ -218,6 +227,7 @@ class SphFluid(Component):
         """Begin from the state of another run; the tank's motion begins with this one."""
         super().begin_from(state)
         self.frame.restart()
+        self.pistons.restart()
 
     def totals(self) -> Totals:
         """Mass, momentum and energies of the fluid that is left, in the frame of its tank."""
@@ -225,7 +235,7 @@ class SphFluid(Component):
         if len(self.state.reference):
             self.symmetry.write_images(self.state)
             totals.internal += self.boundary.energy(self.state, self.lists.arrays, self.team)
-        totals.work = self.frame.work
+        totals.work = self.frame.work + self.pistons.work
         return totals
 
     def view(self) -> Fields:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Protocol
 from quintet.components.shared.search.neighbours import Lists
 from quintet.components.shared.threads import Team
 from quintet.components.sph_fluid.boundary.method import BoundaryMethod, Films, NoFilms
+from quintet.components.sph_fluid.boundary.no_pistons import NoPistons, Pistons
 from quintet.components.sph_fluid.boundary.samples import Samples
 from quintet.components.sph_fluid.boundary.symmetry_planes import NoSymmetry, SymmetryPlanes
 from quintet.components.sph_fluid.integration.method import Integration
@@ -64,6 +65,17 @@ def boundary_method(params: SphFluidParams, samples: Samples, frame: Frame) -> B
     from quintet.components.sph_fluid.boundary.dynamic import DynamicBoundary
 
     return DynamicBoundary(samples)
+
+
+def pistons(params: SphFluidParams, samples: Samples, ranks: Ranks) -> Pistons:
+    """Parts of the boundary that move by themselves."""
+    if not params.boundary.pistons:
+        return NoPistons()
+    # Left out of scenes without pistons.
+    from quintet.components.sph_fluid.boundary.pistons import MovingPistons
+    from quintet.components.sph_fluid.build import wall_density
+
+    return MovingPistons(params, samples, ranks, partial(wall_density, params=params))
 
 
 def contact_stiffness(params: SphFluidParams) -> "ContactStiffness":
@@ -121,6 +133,8 @@ def open_boundaries(params: SphFluidParams) -> OpenBoundaries:
 
 def lubrication_films(params: SphFluidParams, samples: Samples, ranks: Ranks) -> Films:
     """Films in narrow gaps: from the start, where they are needed, or never."""
+    if params.boundary.pistons:
+        return NoFilms()
     if params.boundary.lubrication_films == "auto":
         # Left out of scenes that say whether they want films.
         from quintet.components.sph_fluid.boundary.selective_films import SelectiveFilms

@@ -156,12 +156,15 @@ class SphFluidParams:
             self._check_periodic(apart)
         if boundary.inflow or boundary.outflow:
             self._check_flow()
+        checks.check_moved(boundary)
         checks.check_method(boundary, dimensions)
         if boundary.motion is not None:
             # Left out of scenes whose tank stands still.
             from quintet.components.sph_fluid.setup.motion_checks import check_motion
 
             check_motion(boundary, boundary.motion, dimensions)
+        if boundary.pistons:
+            self._check_pistons()
         self._check_methods()
         self.gauges.check(boundary, spacing, dimensions)
         if self.shapes:
@@ -197,6 +200,17 @@ class SphFluidParams:
                 "gauges.front_gauge must not lie along an axis on which the tank repeats, where "
                 f"nothing is furthest; found {self.gauges.front_gauge}. Remove it."
             )
+
+    def _check_pistons(self) -> None:
+        if self.remove_inside_bodies:
+            raise ValueError(
+                "remove_inside_bodies and boundary.pistons do not go together. Cut the fluid "
+                "where bodies are, or remove the pistons."
+            )
+        # Left out of scenes without pistons.
+        from quintet.components.sph_fluid.setup.piston_checks import check_pistons
+
+        check_pistons(self.boundary, self.dimensions, self.spacing)
 
     def _check_methods(self) -> None:
         """Options are asked for with what they need."""

@@ -32,7 +32,7 @@ class DynamicBoundary:
     def join(self, state: State, static: Fields) -> None:
         """Nothing to do: samples have their densities."""
 
-    def follow_samples(self, state: State, fields: Fields) -> None:
+    def follow_samples(self, state: State, fields: Fields, first: int = 0) -> None:
         """Nothing to do: samples look from where they are."""
 
     def load(self, state: State) -> None:

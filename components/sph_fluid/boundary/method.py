@@ -25,8 +25,8 @@ class BoundaryMethod(Protocol):
     def join(self, state: State, static: Fields) -> None:
         """Make surface samples ready that links bring."""
 
-    def follow_samples(self, state: State, fields: Fields) -> None:
-        """Follow samples that were placed."""
+    def follow_samples(self, state: State, fields: Fields, first: int = 0) -> None:
+        """Follow samples that were placed, from the first one of the port on, or another one."""
 
     def load(self, state: State) -> None:
         """Follow a state that was loaded."""

@@ -22,10 +22,9 @@ from quintet.components.sph_fluid.boundary.kernels.mirrored_density import (
     extrapolate_density,
     mirror_velocity,
 )
-from quintet.components.sph_fluid.boundary.obstacles import from_meshes, obstacle_mirrors
+from quintet.components.sph_fluid.boundary.parts import standing
 from quintet.components.sph_fluid.boundary.samples import Samples
 from quintet.components.sph_fluid.boundary.symmetry_planes import SymmetryPlanes
-from quintet.components.sph_fluid.boundary.walls import wall_mirrors
 from quintet.components.sph_fluid.constants import NO_POTENTIAL, constants
 from quintet.components.sph_fluid.motion.frame import Frame
 from quintet.components.sph_fluid.params import SphFluidParams
@@ -57,8 +56,7 @@ class MirroredBoundary:
 
     def start(self, state: State) -> None:
         """Mirror the walls."""
-        walls, obstacles = wall_mirrors(self.params), obstacle_mirrors(self.params)
-        state.mirror_point = np.concatenate([walls, obstacles, from_meshes(self.params)[1]])
+        _, state.mirror_point = standing(self.params)
 
     def join(self, state: State, static: Fields) -> None:
         """Make room for mirror points; find which samples the contact potential is chosen for."""
@@ -69,11 +67,10 @@ class MirroredBoundary:
             self.stiffness = self._make_stiffness()
             self.contact = self.stiffness.numbers._replace(partial=True)
 
-    def follow_samples(self, state: State, fields: Fields) -> None:
+    def follow_samples(self, state: State, fields: Fields, first: int = 0) -> None:
         """Follow mirror points; set the stiffness of the potential where samples are now."""
-        state.mirror_point[self.samples.row - state.fluid] = fields["surface.mirror"][
-            self.samples.number
-        ]
+        rows, numbers = self.samples.rows_of(first, len(fields["surface.mirror"]))
+        state.mirror_point[rows - state.fluid] = fields["surface.mirror"][numbers]
         if len(self.by_potential):
             rows, body = self.samples.row[self.by_potential], self.samples.body[self.by_potential]
             self.stable_dt = self.stiffness.write(state, rows, body)

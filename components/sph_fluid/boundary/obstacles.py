@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from quintet.components.shared.geometry.bounds import Bounds
 from quintet.components.shared.geometry.lattice import lattice_points
 from quintet.components.sph_fluid.params import SphFluidParams
+from quintet.components.sph_fluid.setup.boundary_meshes import BoundaryMesh
 from quintet.components.sph_fluid.setup.geometry import ROUNDING, Face
 from quintet.components.sph_fluid.state import Array
 
@@ -21,13 +22,16 @@ FELT = 2.0  # smoothing lengths, the radius of the kernel
 MOST_ROWS = 1e6  # along an axis, that are looked at one by one
 
 
-def obstacle_points(params: SphFluidParams) -> Array:
+def obstacle_points(params: SphFluidParams, boxes: Sequence[Bounds] | None = None) -> Array:
     """Particles (n, 3) m of all obstacles, the outermost `wall_offset` spacings inside their faces.
+
+    Of some of them, with `boxes`.
 
     A face that lies on a wall of the tank never meets water: there the particles go on to half a
     spacing from the wall, so that no gap is left in the corner.
     """
-    parts = [_points(box, params)[0] for box in params.boundary.solids]
+    boxes = params.boundary.solids if boxes is None else boxes
+    parts = [_points(box, params)[0] for box in boxes]
     return np.concatenate([np.zeros((0, 3)), *parts])
 
 
@@ -52,10 +56,10 @@ def count_obstacle_points(params: SphFluidParams) -> int:
     return count
 
 
-def obstacle_mirrors(params: SphFluidParams) -> Array:
-    """Images (n, 3) m of the particles of all obstacles, mirrored in the nearest wet face."""
+def obstacle_mirrors(params: SphFluidParams, boxes: Sequence[Bounds] | None = None) -> Array:
+    """Images (n, 3) m of the particles of obstacles, mirrored in the nearest wet face."""
     parts = [np.zeros((0, 3))]
-    for box in params.boundary.solids:
+    for box in params.boundary.solids if boxes is None else boxes:
         points, depth = _points(box, params)
         # On edges and corners, in all the faces that are equally near.
         nearest = depth <= depth.min(axis=(0, 2))[:, np.newaxis] + ROUNDING * params.spacing
@@ -64,16 +68,19 @@ def obstacle_mirrors(params: SphFluidParams) -> Array:
     return np.concatenate(parts)
 
 
-def from_meshes(params: SphFluidParams) -> tuple[Array, Array]:
-    """Particles (n, 3) m behind all surfaces from files, and their images (n, 3) m."""
+def from_meshes(
+    params: SphFluidParams, meshes: Sequence[BoundaryMesh] | None = None
+) -> tuple[Array, Array]:
+    """Particles (n, 3) m behind surfaces from files, all or some, and their images (n, 3) m."""
     none = np.zeros((0, 3))
-    if not params.boundary.meshes:
+    meshes = params.boundary.meshes if meshes is None else meshes
+    if not meshes:
         return none, none
     # Left out of scenes without boundaries from files.
     from quintet.components.sph_fluid.setup.mesh_points import mesh_points
 
     filling = params.mesh_filling
-    pairs = [mesh_points(mesh, filling) for mesh in params.boundary.meshes]
+    pairs = [mesh_points(mesh, filling) for mesh in meshes]
     points, images = (np.concatenate(arrays) for arrays in zip(*pairs, strict=True))
     return points, images
 

@@ -29,7 +29,7 @@ class PotentialBoundary:
     def join(self, state: State, static: Fields) -> None:
         """Nothing to do: samples are stiff once they are placed."""
 
-    def follow_samples(self, state: State, fields: Fields) -> None:
+    def follow_samples(self, state: State, fields: Fields, first: int = 0) -> None:
         """Set the stiffness of samples where they are."""
         self.stiffness.write(state, self.samples.row, self.samples.body)
         self.load(state)

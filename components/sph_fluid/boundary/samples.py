@@ -40,8 +40,16 @@ class Samples:
         self.row = state.sample_rows()
         self.number = state.sample[self.row - state.fluid]
 
-    def move(self, state: State, fields: Fields) -> None:
-        """Put them where they are in the coming step."""
-        state.position_density[self.row, :3] = fields["surface.position"][self.number]
-        state.velocity_pressure[self.row, :3] = fields["surface.velocity"][self.number]
-        self.placed = True
+    def rows_of(self, first: int, count: int) -> tuple[Whole, Whole]:
+        """Rows (k,) in the state of so many samples from the first one on, and which they are."""
+        if count == len(self.volume):
+            return self.row, self.number
+        chosen = np.flatnonzero((self.number >= first) & (self.number < first + count))
+        return self.row[chosen], self.number[chosen] - first
+
+    def move(self, state: State, fields: Fields, first: int = 0) -> None:
+        """Put them where they are in the coming step, from the first one on."""
+        rows, numbers = self.rows_of(first, len(fields["surface.position"]))
+        state.position_density[rows, :3] = fields["surface.position"][numbers]
+        state.velocity_pressure[rows, :3] = fields["surface.velocity"][numbers]
+        self.placed = self.placed or first == 0

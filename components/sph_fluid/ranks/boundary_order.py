@@ -30,9 +30,9 @@ class BoundaryOrder:
     def __len__(self) -> int:
         return len(self._order)
 
-    def follow(self, position: Array) -> None:
-        """Note where the samples (samples, 3) m are."""
-        self._position[self._number] = position
+    def follow(self, position: Array, first: int = 0) -> None:
+        """Note where samples (k, 3) m are, from the first one on."""
+        self._position[self._number[first : first + len(position)]] = position
 
     def sort(self, grid: Grid) -> Whole:
         """Sort all by cell; return the place (n,) of each in the order, by number."""

@@ -37,8 +37,8 @@ class Ranks(Protocol):
     def join(self, static: Fields) -> None:
         """Refuse samples that links bring if they need one rank."""
 
-    def follow_samples(self, fields: Fields) -> None:
-        """Note where the samples were placed."""
+    def follow_samples(self, fields: Fields, first: int = 0) -> None:
+        """Note where the samples from the first one on were placed."""
 
     def load(self, state: State) -> None:
         """Take over a state of all rows that was loaded."""

@@ -47,7 +47,7 @@ class OneRank:
     def join(self, static: Fields) -> None:
         """Nothing to refuse."""
 
-    def follow_samples(self, fields: Fields) -> None:
+    def follow_samples(self, fields: Fields, first: int = 0) -> None:
         """Nothing to do: they stand in the state."""
 
     def load(self, state: State) -> None:

@@ -131,10 +131,10 @@ class SeveralRanks:
                 "rank."
             )
 
-    def follow_samples(self, fields: Fields) -> None:
-        """Note where the samples were placed."""
+    def follow_samples(self, fields: Fields, first: int = 0) -> None:
+        """Note where the samples from the first one on were placed."""
         if self._shared:
-            self._order.follow(fields["surface.position"])
+            self._order.follow(fields["surface.position"], first)
 
     def load(self, state: State) -> None:
         """Keep a part of a state of all rows, if it has lists; else all until they are made."""

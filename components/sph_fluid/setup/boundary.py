@@ -9,6 +9,7 @@ from quintet.components.sph_fluid.setup.boundary_meshes import BoundaryMesh
 from quintet.components.sph_fluid.setup.geometry import FACES, Axis, Exponent, Face, UprightFace
 from quintet.components.sph_fluid.setup.inflow_outflow import Inflow, Outflow
 from quintet.components.sph_fluid.setup.motion import Motion
+from quintet.components.sph_fluid.setup.pistons import Piston
 from quintet.interfaces.params import Fraction, NotNegative, Positive, Vector, parameters
 
 
@@ -43,6 +44,8 @@ class Boundary:
         Tanks and obstacles from files, with or without walls; in three dimensions.
     motion
         How the tank with all that stands in it moves; the fluid is computed in its frame.
+    pistons
+        Parts of the boundary that move by themselves, while the others stand.
     wall_offset : 1
         Spacings from a wall's face out to its first particles; 0.5 with mdbc.
     sample_depth : 1
@@ -79,6 +82,7 @@ class Boundary:
     obstacles: tuple[Box, ...] = ()
     meshes: tuple[BoundaryMesh, ...] = ()
     motion: Motion | None = None
+    pistons: tuple[Piston, ...] = ()
     wall_offset: Positive = 0.5
     sample_depth: NotNegative = 0.5
     wall_viscosity_factor: Fraction = 1.0
@@ -95,7 +99,8 @@ class Boundary:
     @property
     def is_still(self) -> bool:
         """Whether nothing comes or goes, and nothing of the boundary moves."""
-        return not (self.wall_velocity or self.inflow or self.outflow or self.motion)
+        comes_or_goes = self.inflow or self.outflow
+        return not (comes_or_goes or self.wall_velocity or self.motion or self.pistons)
 
     @property
     def solids(self) -> tuple[Bounds, ...]:
@@ -121,6 +126,8 @@ class Boundary:
 
     def why_no_films(self, dimensions: int) -> str:
         """Why there can be no films in narrow gaps; "" if there can."""
+        if self.pistons:
+            return "films know no pistons"
         if self.method != "mdbc":
             return f"boundary.method {self.method} knows none"
         if dimensions == 2:

@@ -199,3 +199,13 @@ def _check_corners(name: str, box: Bounds, spacing: float) -> None:
 def _overlap(first: Bounds, second: Bounds, tolerance: float) -> bool:
     (a, b), (c, d) = first, second
     return all(min(b[axis], d[axis]) - max(a[axis], c[axis]) > tolerance for axis in range(3))
+
+
+def check_moved(boundary: Boundary) -> None:
+    """Fluid does not come, go or repeat in a tank of which something moves."""
+    moved = [name for name in ("motion", "pistons") if getattr(boundary, name)]
+    others = [name for name in ("inflow", "outflow", "periodic") if getattr(boundary, name)]
+    if moved and others:
+        raise ValueError(
+            f"boundary.{moved[0]} is not available with boundary.{others[0]}. Remove one of them."
+        )

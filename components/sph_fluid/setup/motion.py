@@ -148,6 +148,12 @@ class Motion:
         x, y, z = (moved != 0.0).tolist()
         return x, y, z
 
+    def least(self, axis: int, sign: float) -> float:
+        """Displacement [m] along an axis that is least by its sign, of the rows of a table."""
+        if self.period is not None:
+            return -sign * abs(self.amplitude[axis])
+        return sign * float((sign * self._table()[1][:, axis]).min())
+
     @property
     def direction(self) -> Array:
         """Unit vector (3,) along the axis of rotation; that of y if it has none."""

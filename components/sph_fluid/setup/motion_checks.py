@@ -13,7 +13,7 @@ def check_motion(boundary: Boundary, motion: Motion, dimensions: int) -> None:
             "boundary.motion needs walls, obstacles or meshes that move; found none. Add them, or "
             "remove motion."
         )
-    if dimensions == 2 and not _is_along(motion, "y"):
+    if dimensions == 2 and not is_along(motion, "y"):
         raise ValueError(
             "boundary.motion must stay in the plane of x and z in two dimensions: displaced by "
             f"nothing along y, and turned about y; found displacements along "
@@ -21,7 +21,7 @@ def check_motion(boundary: Boundary, motion: Motion, dimensions: int) -> None:
             "dimensions to 3."
         )
     for face in boundary.symmetry:
-        if not _is_along(motion, face[0]):
+        if not is_along(motion, face[0]):
             raise ValueError(
                 f"boundary.motion must stay in the plane of boundary.symmetry {face}: displaced by "
                 f"nothing along {face[0]}, and turned about {face[0]}; found displacements along "
@@ -30,7 +30,7 @@ def check_motion(boundary: Boundary, motion: Motion, dimensions: int) -> None:
             )
 
 
-def _is_along(motion: Motion, name: str) -> bool:
+def is_along(motion: Motion, name: str) -> bool:
     """Whether nothing is displaced along an axis, and all is turned about it."""
     axis = "xyz".index(name)
     leaning = [abs(part) for k, part in enumerate(motion.direction) if k != axis]

@@ -79,6 +79,17 @@ PARAMS = {
         "density_diffusion": 0.1,
         **GAUGES,
     },
+    "pushed": {  # by a block that moves
+        "boundary__method": "mdbc",
+        "boundary__walls": ((-0.2, 0.0, 0.0), (1.6, 0.4, 0.8)),
+        "boundary__obstacles": [((-0.15, 0.0, 0.0), (0.0, 0.4, 0.8))],
+        "boundary__pistons": [
+            {"part": "obstacles.0", "motion": {"period": 0.2, "amplitude": [0.1, 0.0, 0.0]}}
+        ],
+        "fluid": [DAM],
+        "density_diffusion": 0.1,
+        **GAUGES,
+    },
     "single": {  # precision, with a plane of symmetry
         "precision": "float32",
         "boundary__method": "mdbc",
@@ -116,6 +127,8 @@ class Run(SolverRun):
         params = fluid_params(spacing=SPACING, **({"sound_speed": 40.0} | PARAMS[self.name]))
         threads = 2 if self.name == "dam" and WORLD.size > 1 else 1
         fluid = SphFluid(params, Resources(threads, communicator=COMMUNICATOR))
+        if self.name == "pushed":
+            fluid.bind({}, frozenset())
         if self.name == "body":
             self.arm, normal, volume = fill(BOX, SIZE, SPACING, 0.5 * SPACING)
             self.mirror = mirrors(BOX, SIZE, self.arm, normal)

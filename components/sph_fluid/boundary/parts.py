@@ -1,0 +1,62 @@
+"""What of walls, obstacles and meshes stands, and what moves as a piston does."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from quintet.components.sph_fluid.boundary.obstacles import (
+    from_meshes,
+    obstacle_mirrors,
+    obstacle_points,
+)
+from quintet.components.sph_fluid.boundary.walls import wall_mirrors, wall_points
+from quintet.components.sph_fluid.params import SphFluidParams
+from quintet.components.sph_fluid.setup.pistons import Piston
+from quintet.components.sph_fluid.state import Array
+
+Points = tuple[Array, Array]  # particles (n, 3) m and their images (n, 3) m
+
+
+def standing(params: SphFluidParams) -> Points:
+    """Particles of all that stands, and their images in its faces."""
+    edge = params.boundary
+    points, images = wall_points(params), wall_mirrors(params)
+    stays = np.ones(len(points), bool)
+    for piston in edge.pistons:
+        if piston.face:
+            stays &= ~_behind(points, piston.face, params)
+    walls = points[stays], images[stays]
+    moved = {piston.number("obstacles") for piston in edge.pistons}
+    left = [box for number, box in enumerate(edge.solids) if number not in moved]
+    boxes = obstacle_points(params, left), obstacle_mirrors(params, left)
+    moved = {piston.number("meshes") for piston in edge.pistons}
+    meshes = from_meshes(params, [m for n, m in enumerate(edge.meshes) if n not in moved])
+    return _joined(walls, boxes, meshes)
+
+
+def moving(params: SphFluidParams, piston: Piston) -> Points:
+    """Particles of a piston as it stands in the scene, and their images in its faces."""
+    edge = params.boundary
+    if piston.face:
+        points = wall_points(params)
+        behind = _behind(points, piston.face, params)
+        return points[behind], wall_mirrors(params)[behind]
+    if (number := piston.number("obstacles")) >= 0:
+        boxes = [edge.solids[number]]
+        return obstacle_points(params, boxes), obstacle_mirrors(params, boxes)
+    return from_meshes(params, [edge.meshes[piston.number("meshes")]])
+
+
+def _behind(points: Array, face: str, params: SphFluidParams) -> NDArray[np.bool_]:
+    """Which wall particles (n, 3) m are behind a face, and beside no other one."""
+    assert params.boundary.tank is not None
+    low, high = np.array(params.boundary.tank)
+    axis = "xyz".index(face[0])
+    beyond = points[:, axis] > high[axis] if face[1] == "+" else points[:, axis] < low[axis]
+    others = [k for k in range(3) if k != axis]
+    inside = ((points[:, others] > low[others]) & (points[:, others] < high[others])).all(axis=1)
+    return np.asarray(beyond & inside)
+
+
+def _joined(*parts: Points) -> Points:
+    points, images = zip(*parts, strict=True)
+    return np.concatenate(points), np.concatenate(images)

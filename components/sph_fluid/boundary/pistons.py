@@ -1,0 +1,146 @@
+"""Parts of the boundary that move by themselves; imported only by a scene that asks.
+
+Their particles are surface samples, after those that links bring: they stand in the state as these
+do, are listed and shared among ranks as these are, and the fluid's force on them is summed as on
+these. They are placed as samples are: where they are in the middle of a step, with the mean
+velocity over it, so that displacements add up. The force of a step on them times their velocity is
+the work that the fluid does on them.
+"""
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+
+from quintet.components.sph_fluid.boundary.method import BoundaryMethod
+from quintet.components.sph_fluid.boundary.parts import moving
+from quintet.components.sph_fluid.boundary.samples import Samples
+from quintet.components.sph_fluid.boundary.walls import wall_volume
+from quintet.components.sph_fluid.constants import constants
+from quintet.components.sph_fluid.kernels import write_pressure
+from quintet.components.sph_fluid.params import SphFluidParams
+from quintet.components.sph_fluid.ranks.method import Ranks
+from quintet.components.sph_fluid.setup.trajectory import ROUNDING, Trajectory
+from quintet.components.sph_fluid.state import Array, State
+from quintet.interfaces.component import Fields
+from quintet.interfaces.errors import StepError
+
+SAVED = "pistons"  # key of a saved state: time [s] and work [J]
+
+
+class Part:
+    """One piston: its particles and their images where the scene has them, and its trajectory."""
+
+    def __init__(self, params: SphFluidParams, number: int) -> None:
+        piston = params.boundary.pistons[number]
+        self.points, self.images = moving(params, piston)  # (k, 3) m
+        self.trajectory: Trajectory = piston.motion.trajectory
+        self.axis, self.point = piston.motion.direction, np.array(piston.motion.point)
+
+    def at(self, points: Array, time: float) -> Array:
+        """Places (k, 3) m of points (k, 3) m of it at a time [s]."""
+        place = self.trajectory.at(time).place
+        angle = float(place[3])
+        if angle == 0.0:
+            return points + place[:3]
+        arm = points - self.point
+        x, y, z = self.axis.tolist()
+        along = (arm[:, 0] * x + arm[:, 1] * y + arm[:, 2] * z)[:, np.newaxis] * self.axis
+        turned = (
+            along + math.cos(angle) * (arm - along) + math.sin(angle) * np.cross(self.axis, arm)
+        )
+        return np.asarray(self.point + place[:3] + turned)
+
+
+class MovingPistons:
+    """All pistons of one fluid."""
+
+    def __init__(
+        self,
+        params: SphFluidParams,
+        samples: Samples,
+        ranks: Ranks,
+        density_at: Callable[[Array], Array],
+    ) -> None:
+        self.params, self.samples, self.ranks = params, samples, ranks
+        self.density_at = density_at  # kg/m3 of walls at places (n, 3) m, at the start
+        self.parts = [Part(params, number) for number in range(len(params.boundary.pistons))]
+        self.end = min(part.trajectory.end for part in self.parts)  # s
+        self.links = 0  # samples that links bring, which theirs follow
+        self.time, self.work = 0.0, 0.0
+        self.velocity = np.zeros((0, 3))  # (k, 3) m/s, mean over the step
+
+    def join(self, static: Fields) -> dict[str, Array]:
+        """Static fields of the samples that links bring, and of the pistons' after them."""
+        count = sum(len(part.points) for part in self.parts)
+        body = [np.full(len(part.points), -1.0 - k) for k, part in enumerate(self.parts)]
+        volume = wall_volume(self.params)
+        appended = {"surface.volume": np.full(count, volume), "surface.body": np.concatenate(body)}
+        self.links = len(static.get("surface.volume", ()))
+        joined = {
+            k: np.concatenate([static.get(k, np.zeros(0)), rows]) for k, rows in appended.items()
+        }
+        contact = static.get("surface.contact")
+        if contact is not None:
+            joined["surface.contact"] = np.concatenate([contact, np.zeros(count)])
+        return {**static, **joined}
+
+    def start(self, state: State, boundary: BoundaryMethod) -> None:
+        """Put them where the scene has them, under the pressure of the fluid at rest there."""
+        rows, numbers = self.samples.rows_of(self.links, len(self.samples.volume) - self.links)
+        places = self._places(0.0)
+        state.position_density[rows, 3] = self.density_at(places)[numbers]
+        self._move(state, boundary, places, np.zeros_like(places), 0.0)
+        write_pressure(constants(self.params), state.position_density, state.velocity_pressure)
+
+    def place(self, state: State, boundary: BoundaryMethod, dt: float) -> None:
+        """Put them where they are in the middle of a step [s]."""
+        end = self.time + dt
+        if end > self.end + ROUNDING * abs(self.end):
+            raise StepError(
+                "boundary.pistons must go on until the run's end; the table of one ends at "
+                f"{self.end:g} s, and a step goes on to {end:g} s. Extend it, or end the run "
+                "before."
+            )
+        middle = self.time + 0.5 * dt
+        ends = [self._places(time) for time in (self.time, end)]
+        self.velocity = (ends[1] - ends[0]) / dt
+        self._move(state, boundary, self._places(middle), self.velocity, middle)
+
+    def _move(
+        self, state: State, boundary: BoundaryMethod, places: Array, velocity: Array, time: float
+    ) -> None:
+        fields = {
+            "surface.position": places,
+            "surface.velocity": velocity,
+            "surface.mirror": np.concatenate([p.at(p.images, time) for p in self.parts]),
+        }
+        self.samples.move(state, fields, self.links)
+        self.ranks.follow_samples(fields, self.links)
+        boundary.follow_samples(state, fields, self.links)
+
+    def _places(self, time: float) -> Array:
+        return np.concatenate([part.at(part.points, time) for part in self.parts])
+
+    def advance(self, state: State, dt: float) -> None:
+        """Count the work of a step [s], and go on to its end; rank 0 has the forces."""
+        force = state.force[self.links :]
+        per_metre = self.params.slab_thickness
+        self.work -= dt * per_metre * float((force * self.velocity).sum(axis=1).sum())
+        self.time += dt
+
+    def forces_of_links(self, state: State) -> Array:
+        """Forces (samples, 3) N on the samples that links bring."""
+        return state.force[: self.links]
+
+    def save(self) -> dict[str, Array]:
+        """Copy out their clock, and their work."""
+        return {SAVED: np.array([self.time, self.work])}
+
+    def load(self, state: Fields) -> None:
+        """Come back to a saved state."""
+        self.time, self.work = np.asarray(state.get(SAVED, np.zeros(2))).tolist()
+
+    def restart(self) -> None:
+        """Set the clock and the work back to 0."""
+        self.time, self.work = 0.0, 0.0

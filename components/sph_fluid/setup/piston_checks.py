@@ -1,0 +1,106 @@
+"""What pistons must suit; each mistake is one sentence."""
+
+import numpy as np
+
+from quintet.components.sph_fluid.setup.boundary import Boundary
+from quintet.components.sph_fluid.setup.geometry import ROUNDING
+from quintet.components.sph_fluid.setup.motion_checks import is_along
+from quintet.components.sph_fluid.setup.pistons import Piston
+
+BACK = 1e-9  # of a spacing: how far out of the tank a face may go
+
+
+def check_pistons(boundary: Boundary, dimensions: int, spacing: float) -> None:
+    """Pistons are parts that are there, each once, and leave no gaps behind."""
+    parts = [piston.part for piston in boundary.pistons]
+    for number, piston in enumerate(boundary.pistons):
+        where = f"boundary.pistons[{number}]"
+        if parts.index(piston.part) < number:
+            raise ValueError(
+                f"{where} must move a part of its own; found {piston.part} twice. Remove one."
+            )
+        _check_part(where, piston, boundary, dimensions)
+        if dimensions == 2 and not is_along(piston.motion, "y"):
+            raise ValueError(
+                f"{where}.motion must stay in the plane of x and z in two dimensions: displaced by "
+                "nothing along y, and turned about y. Correct it, or set dimensions to 3."
+            )
+        for face in boundary.symmetry:
+            if not is_along(piston.motion, face[0]):
+                raise ValueError(
+                    f"{where}.motion must stay in the plane of boundary.symmetry {face}: displaced "
+                    f"by nothing along {face[0]}, and turned about {face[0]}. Correct it, or make "
+                    "the face a wall."
+                )
+        if piston.face:
+            _check_face(where, piston, boundary, spacing)
+        elif (box := piston.number("obstacles")) >= 0:
+            _check_dry_faces(where, piston, boundary, box, spacing, dimensions)
+    if boundary.method == "potential":
+        raise ValueError(
+            "boundary.pistons need boundary.method mdbc or dbc; found potential. Set method."
+        )
+    if boundary.lubrication_films is True:
+        raise ValueError(
+            "boundary.pistons and lubrication_films do not go together: films know no pistons. Set "
+            "lubrication_films to false, or remove the pistons."
+        )
+
+
+def _check_part(where: str, piston: Piston, boundary: Boundary, dimensions: int) -> None:
+    closed = boundary.closed_faces(dimensions) if boundary.tank else ()
+    if piston.face and piston.face not in closed:
+        raise ValueError(
+            f"{where}.part must be a closed face of the tank, {', '.join(closed) or 'of none here'}"
+            f"; found {piston.part}. Close the face, or name another part."
+        )
+    for kind, count in (("obstacles", len(boundary.solids)), ("meshes", len(boundary.meshes))):
+        number = piston.number(kind)  # type: ignore[arg-type]
+        if number >= count:
+            raise ValueError(
+                f"{where}.part must be one of the {count} {kind}, numbered from 0 on; found "
+                f"{piston.part}. Correct its number."
+            )
+
+
+def _check_face(where: str, piston: Piston, boundary: Boundary, spacing: float) -> None:
+    """A face moves into the tank, along its normal: behind it are no walls."""
+    axis, sign = "xyz".index(piston.face[0]), 1.0 if piston.face[1] == "-" else -1.0
+    motion, across = piston.motion, list(piston.motion.shifts)
+    across[axis] = False
+    if motion.turns or any(across):
+        raise ValueError(
+            f"{where}: {piston.part} must move along {piston.face[0]} alone, or it would leave the "
+            "other faces; take an obstacle for other motions."
+        )
+    if sign * motion.least(axis, sign) < -BACK * spacing:
+        raise ValueError(
+            f"{where}: {piston.part} must move into the tank, from where it stands in the scene; "
+            f"found displacements of {motion.least(axis, sign):g} m along {piston.face[0]}, where "
+            "the other faces have no walls. Move the face in the scene, or take an obstacle."
+        )
+    if piston.face in boundary.wall_velocity:
+        raise ValueError(
+            f"{where}: {piston.part} must not have a boundary.wall_velocity too; found both. "
+            "Remove one."
+        )
+
+
+def _check_dry_faces(
+    where: str, piston: Piston, boundary: Boundary, box: int, spacing: float, dimensions: int
+) -> None:
+    """Faces of an obstacle that lie on a wall stay on it."""
+    if boundary.tank is None:
+        return
+    ends = np.array([boundary.tank, boundary.solids[box]])
+    touches = np.abs(ends[0] - ends[1]) <= ROUNDING * spacing  # (2, 3): lower and upper faces
+    for axis, name in enumerate("xyz"):
+        sides = [f"{name}{side}" for side in "-+"]
+        closed = [face in boundary.closed_faces(dimensions) for face in sides]
+        for side in range(2):
+            if touches[side, axis] and closed[side] and not is_along(piston.motion, name):
+                raise ValueError(
+                    f"{where}: {piston.part} must stay on the wall {sides[side]} that it touches: "
+                    f"displaced by nothing along {name}, and turned about {name}. Let it stand off "
+                    "the wall, or let it go through as far as it moves."
+                )

@@ -1,0 +1,214 @@
+"""Parts of the boundary that move by themselves: places, forces, work, and what is refused."""
+
+import numpy as np
+import pytest
+from fluid_params import fluid_params
+from pydantic import ValidationError
+
+from quintet.components.sph_fluid.boundary.parts import moving, standing
+from quintet.components.sph_fluid.component import SphFluid
+from quintet.components.sph_fluid.plan import particles
+from quintet.interfaces.component import outputs_of
+from quintet.interfaces.errors import StepError
+
+SPACING = 0.02
+TANK = ((-0.1, 0.0, 0.0), (0.4, 1.0, 0.4))
+PUSH = {
+    "times": [0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 2.0],
+    "displacement": [[x, 0.0, 0.0] for x in (0.0, 0.005, 0.02, 0.035, 0.04, 0.04, 0.04)],
+}
+STAY = {"times": [0.0, 9.0], "displacement": [[0.0, 0.0, 0.0], [0.0, 0.0, 0.0]]}
+BLOCK = ((0.0, 0.0, 0.0), (0.06, 1.0, 0.4))  # all across the tank
+BASE = {
+    "spacing": SPACING,
+    "sound_speed": 20.0,
+    "dimensions": 2,
+    "kernel": "wendland",
+    "density_diffusion": 0.1,
+    "integration": "symplectic",
+    "viscosity.artificial": 0.05,
+    "boundary.method": "mdbc",
+    "boundary.walls": TANK,
+    "fluid": [((0.06, 0.0, 0.0), (0.4, 1.0, 0.2))],
+}
+OBSTACLE = {"boundary.obstacles": [BLOCK]}
+WALL = {"boundary.walls": ((0.06, 0.0, 0.0), TANK[1])}
+
+
+def piston(part, motion):
+    return {"boundary.pistons": [{"part": part, "motion": motion}]}
+
+
+def fluid_with(*tables):
+    settings = dict(BASE)
+    for table in tables:
+        settings |= table
+    fluid = SphFluid(fluid_params(**settings))
+    fluid.bind({}, frozenset())
+    return fluid
+
+
+def piston_x(fluid):
+    return fluid.state.position_density[fluid.samples.row, 0]
+
+
+@pytest.mark.parametrize("method", ["mdbc", "dbc"])
+@pytest.mark.parametrize(("tables", "part"), [((OBSTACLE,), "obstacles.0"), ((WALL,), "walls.x-")])
+def test_a_part_that_is_told_to_stay_acts_as_one_that_stands(tables, part, method):
+    still = fluid_with(*tables, {"boundary.method": method})
+    told = fluid_with(*tables, {"boundary.method": method}, piston(part, STAY))
+    assert still.items() == told.items() == particles(told.params)
+    for fluid in (still, told):
+        for _ in range(20):
+            fluid.step(5e-4)
+    place = "position_density"
+    ours, others = (getattr(f.state, place)[: f.state.fluid] for f in (still, told))
+    order, other = np.argsort(still.state.identity), np.argsort(told.state.identity)
+    assert ours[order] == pytest.approx(others[other], abs=1e-9)
+    assert told.totals().work == 0.0
+
+
+@pytest.mark.parametrize(("tables", "part"), [((OBSTACLE,), "obstacles.0"), ((WALL,), "walls.x-")])
+def test_a_piston_goes_where_its_table_says_and_pushes_the_fluid_before_it(tables, part):
+    fluid = fluid_with(*tables, piston(part, PUSH))
+    begin = piston_x(fluid).copy()
+    for _ in range(500):
+        fluid.step(5e-4)
+    middle = 0.5 * (499 + 500) * 5e-4
+    shift = fluid.params.boundary.pistons[0].motion.trajectory.at(middle).place[0]
+    assert np.sort(piston_x(fluid)) == pytest.approx(np.sort(begin) + shift, abs=1e-12)
+    x = fluid.state.position_density[: fluid.state.fluid, 0]
+    assert x.min() > 0.06 + shift
+    assert fluid.state.lost == 0
+
+
+def test_the_work_of_a_slow_push_lifts_the_water():
+    """Beside what a tank at rest does by itself; mirrored walls keep energy within some per cent."""
+    still, pushed = fluid_with(OBSTACLE), fluid_with(OBSTACLE, piston("obstacles.0", PUSH))
+    energies = {}
+    for fluid in (still, pushed):
+        for _ in range(1000):
+            fluid.step(5e-4)
+        sums = fluid.totals()
+        energies[fluid] = sums.kinetic + sums.potential + sums.internal
+    width, depth, weight = 0.34, 0.2, 9.81 * 1000.0
+    lifted = 0.5 * weight * width * depth**2 * (width / (width - 0.04) - 1.0)
+    work = pushed.totals().work
+    assert work == pytest.approx(lifted, rel=0.25)  # waves have the rest
+    gained = energies[pushed] - energies[still]
+    assert gained == pytest.approx(work, rel=0.06)
+
+
+def test_a_piston_moves_as_samples_of_a_link_do_to_the_bit():
+    pushed = fluid_with(OBSTACLE, piston("obstacles.0", PUSH))
+    part, trajectory = pushed.pistons.parts[0], pushed.pistons.parts[0].trajectory
+    linked = SphFluid(fluid_params(**BASE))
+    count = len(part.points)
+    volume = pushed.samples.volume
+    static = {"normal": np.zeros((count, 3)), "volume": volume, "body": np.zeros(count)}
+    linked.bind({f"surface.{k}": v for k, v in static.items()}, frozenset({"surface"}))
+    dt, time = 5e-4, 0.0
+    for _ in range(200):
+        begin, middle, end = (trajectory.at(time + share * dt).place[:3] for share in (0, 0.5, 1))
+        fields = {
+            "surface.position": part.points + middle,
+            "surface.velocity": ((part.points + end) - (part.points + begin)) / dt,
+            "surface.mirror": part.images + middle,
+        }
+        linked.take(fields)
+        linked.step(dt)
+        pushed.step(dt)
+        time += dt
+    for field in ("position_density", "velocity_pressure", "force"):
+        assert np.array_equal(getattr(linked.state, field), getattr(pushed.state, field)), field
+    assert np.abs(pushed.state.force).max() > 0.0
+    assert len(outputs_of(pushed)["surface_load.force"]) == 0
+
+
+def test_a_flap_turns_about_its_axis():
+    flap = {
+        "period": 0.8,
+        "angle_amplitude": 0.3,
+        "axis": [0.0, 1.0, 0.0],
+        "point": [0.1, 0.5, 0.0],
+    }
+    free = {"boundary.obstacles": [((0.02, 0.0, 0.1), (0.06, 1.0, 0.4))]}
+    fluid = fluid_with(free, piston("obstacles.0", flap), {"fluid": [((0.1, 0, 0), (0.4, 1, 0.2))]})
+    points = fluid.pistons.parts[0].points
+    for _ in range(100):
+        fluid.step(5e-4)
+    angle = 0.3 * np.sin(2 * np.pi * 99.5 * 5e-4 / 0.8)
+    x, z = points[:, 0] - 0.1, points[:, 2]
+    turned = 0.1 + np.cos(angle) * x + np.sin(angle) * z
+    assert np.sort(piston_x(fluid)) == pytest.approx(np.sort(turned), abs=1e-9)
+
+
+@pytest.mark.parametrize("scheme", ["extrapolated", "symplectic"])
+def test_a_saved_state_goes_on_with_the_same_bits(scheme):
+    def make():
+        return fluid_with(OBSTACLE, piston("obstacles.0", PUSH), {"integration": scheme})
+
+    first, second = make(), make()
+    for _ in range(150):
+        first.step(5e-4 if scheme == "symplectic" else 2e-4)
+    second.load(first.save())
+    for _ in range(50):
+        for fluid in (first, second):
+            fluid.step(5e-4 if scheme == "symplectic" else 2e-4)
+    for name, array in first.save().items():
+        assert np.array_equal(array, second.save()[name]), name
+    assert first.totals().work != 0.0
+
+
+def test_a_step_beyond_the_table_is_refused():
+    short = {"times": [0.0, 1e-3], "displacement": [[0, 0, 0], [1e-6, 0, 0]]}
+    fluid = fluid_with(OBSTACLE, piston("obstacles.0", short))
+    fluid.step(1e-3)
+    with pytest.raises(StepError, match=r"table of one ends at 0.001 s, and a step goes on to"):
+        fluid.step(1e-3)
+
+
+def test_what_stands_and_what_moves_is_all_there_is():
+    params = fluid_params(**BASE | OBSTACLE | WALL | piston("walls.x+", STAY))
+    whole = fluid_params(**BASE | OBSTACLE | WALL)
+    parts = [standing(params), moving(params, params.boundary.pistons[0])]
+    points = np.concatenate([p for p, _ in parts])
+    assert sorted(map(tuple, points)) == sorted(map(tuple, standing(whole)[0]))
+    assert {len(p) - len(images) for p, images in parts} == {0}
+
+
+OUT = {"times": [0.0, 1.0], "displacement": [[0.0, 0.0, 0.0], [-0.1, 0.0, 0.0]]}
+UP = {"times": [0.0, 1.0], "displacement": [[0.0, 0.0, 0.0], [0.0, 0.0, 0.1]]}
+TURN = {"period": 1.0, "angle_amplitude": 0.1, "axis": [1.0, 0.0, 0.0]}
+DEEP = {"dimensions": 3}
+
+
+@pytest.mark.parametrize(
+    ("part", "motion", "more", "match"),
+    [
+        ("wall.x-", PUSH, {}, "part must be one of walls.x-, walls.x"),
+        ("obstacles.one", PUSH, {}, "with a number N from 0 on; found obstacles.one"),
+        ("walls.z+", PUSH, {}, r"must be a closed face of the tank, x-, x\+, z-; found walls\.z"),
+        ("obstacles.3", PUSH, {}, "one of the 1 obstacles, numbered from 0 on; found obstacles.3"),
+        ("meshes.0", PUSH, {}, "one of the 0 meshes"),
+        ("walls.x-", OUT, {}, r"must move into the tank.*found displacements of -0.1 m along x"),
+        ("walls.x-", {"period": 1.0, "amplitude": [0.1, 0, 0]}, {}, "must move into the tank"),
+        ("walls.x-", UP, {}, "must move along x alone"),
+        ("walls.x-", PUSH, {"boundary.wall_velocity": {"x-": [0, 0, 1.0]}}, "wall_velocity too"),
+        ("obstacles.0", UP, {}, "must stay on the wall z- that it touches"),
+        ("obstacles.0", TURN, {}, "in the plane of x and z in two dimensions"),
+        ("obstacles.0", PUSH, {"boundary.symmetry": ["x+"]}, "plane of boundary.symmetry x"),
+        ("obstacles.0", PUSH, {"boundary.method": "potential"}, "need boundary.method mdbc or dbc"),
+        ("obstacles.0", PUSH, {"remove_inside_bodies": True}, "do not go together"),
+        ("obstacles.0", PUSH, DEEP | {"boundary.lubrication_films": True}, "films know no pistons"),
+    ],
+)
+def test_a_piston_that_cannot_move_so_is_refused(part, motion, more, match):
+    with pytest.raises(ValidationError, match=match):
+        fluid_params(**BASE | OBSTACLE | piston(part, motion) | more)
+
+
+def test_a_part_that_is_moved_twice_is_refused():
+    twice = [{"part": "obstacles.0", "motion": PUSH}] * 2
+    with pytest.raises(ValidationError, match=r"found obstacles\.0 twice"):
+        fluid_params(**BASE | OBSTACLE, **{"boundary.pistons": twice})
