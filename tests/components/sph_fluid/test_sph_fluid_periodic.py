@@ -252,6 +252,10 @@ def test_a_body_in_a_face_is_pushed_as_inside() -> None:
             {"boundary.periodic": ["z"], "boundary.symmetry": ["x-"]},
             "boundary.symmetry is not available with boundary.periodic",
         ),
+        (
+            {"boundary.motion": {"period": 1.0, "amplitude": [0.1, 0.0, 0.0]}},
+            "boundary.motion is not available with boundary.periodic",
+        ),
         ({"gauges.front_gauge": "x"}, "front_gauge must not lie along an axis on which"),
     ],
 )  # fmt: skip
