@@ -32,7 +32,7 @@ def remove(state: State, samples: Samples, position: Array, params: SphFluidPara
                 f"{len(rows) * mass:.4g} kg, were removed"
             )
         removed[rows] = True
-    state.removed += int(removed.sum())
+    state.removed += int((removed & (state.role == 0) if len(state.role) else removed).sum())
     state.keep(np.flatnonzero(~removed), np.arange(len(state.sample)))
     samples.find_rows(state)
     return notes

@@ -45,6 +45,8 @@ def note_exits(state: State, walls: Bounds | None) -> NDArray[np.bool_]:
         state.exit_face[outside] = np.where(before > 0, before, 1 + np.argmax(beyond, axis=1))
         # Written so that a place that is not finite is lost.
         is_lost[outside] = ~(beyond.max(axis=1) < STRAY * float((high - low).max()))
+    if len(state.role):
+        is_lost &= state.role == 0  # what an outflow's buffer holds has left already
     return is_lost
 
 

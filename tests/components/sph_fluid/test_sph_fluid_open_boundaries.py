@@ -192,6 +192,28 @@ def test_an_outflow_keeps_its_pressure() -> None:
     assert fluid.view()["pressure"] == pytest.approx(1000.0, rel=0.02)
 
 
+def test_fluid_that_is_driven_back_into_an_inflow_has_left() -> None:
+    fluid = tube()
+    state = {name: np.array(array) for name, array in fluid.save().items()}
+    row = int(np.flatnonzero(state["role"] == 0)[0])
+    state["position_density"][row, :3] = [0.5 * SPACING, 0.5, 0.25]
+    fluid.load(state)
+    fluid.step(1e-5)
+    assert balance(fluid)["driven back into an inflow"] == pytest.approx(-1.0)
+    assert outputs_of(fluid)["mass_gauge.left"] == pytest.approx(MASS)
+
+
+def test_what_a_buffer_holds_is_not_lost_again() -> None:
+    fluid = tube()
+    state = {name: np.array(array) for name, array in fluid.save().items()}
+    row = int(np.flatnonzero(state["role"] == 2)[0])
+    state["position_density"][row, 2] = -2.0
+    fluid.load(state)
+    fluid.step(1e-5)
+    assert balance(fluid)["at the start"] == pytest.approx(fluid.state.at_start)
+    assert fluid.state.lost == 0
+
+
 INFLOW = {"face": "x-", "speed": 1.0}
 
 
