@@ -179,6 +179,16 @@ def test_a_level_bears_the_water_at_both_ends() -> None:
     balance(fluid)
 
 
+def test_an_inflow_may_be_as_dense_as_water_at_rest() -> None:
+    inflow = {"face": "x-", "speed": SPEED, "level": 0.5, "density": "hydrostatic"}
+    fluid = tube(**{"gravity": [0.0, 0.0, -9.81], "sound_speed": 25.0, "boundary.inflow": [inflow]})
+    run(fluid, 0.02)
+    held = np.flatnonzero(fluid.state.role == 1)
+    z, density = fluid.state.position_density[held, 2:].T
+    pressure = fluid.state.velocity_pressure[held, 3] * density**2
+    assert pressure == pytest.approx(9810.0 * (0.5 - z), rel=1e-9)
+
+
 def test_an_outflow_keeps_its_pressure() -> None:
     """Fluid that begins under it stays under it, up to the inflow.
 
