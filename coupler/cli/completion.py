@@ -11,7 +11,7 @@ from typing import Any
 
 import argcomplete
 
-from quintet.coupler.coupling.links import known_links, maker
+from quintet.coupler.coupling.links import keys_of
 from quintet.coupler.reference.sections import subjects
 from quintet.coupler.scene.foreign_code import trusted_params
 from quintet.coupler.scene.read import library, locate, parse
@@ -139,7 +139,7 @@ def _classes(table: str, name: str, entry: Any) -> list[type]:
         params = trusted_params(kind, Path(), False) if kind else None  # nothing of its folder
         return [ComponentKeys, *([params] if params else [])]
     if table == "links":
-        params = maker(str(kind)).keys if kind in known_links() else None
+        params = keys_of(kind)
         return [params] if params else []
     if table == "groups":
         return [GroupSettings]

@@ -5,7 +5,7 @@ from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
-from quintet.coupler.coupling.links import known_links, maker
+from quintet.coupler.coupling.links import keys_of
 from quintet.coupler.measures.expectation import Expectation
 from quintet.coupler.scene.foreign_code import trusted_params
 from quintet.coupler.scene.scene import GroupSettings, SceneFile
@@ -87,8 +87,7 @@ class _Conversion:
         return self._of(self._params(table.get("kind")), table, where)
 
     def _link(self, table: Table, where: str) -> Table:
-        kind = table.get("kind")
-        return self._of(maker(str(kind)).keys if kind in known_links() else None, table, where)
+        return self._of(keys_of(table.get("kind")), table, where)
 
     def _stand_ins(self, table: Table, where: str) -> Table:
         return {

@@ -26,3 +26,8 @@ def maker(kind: str) -> LinkKind:
             "quintet.coupler.coupling.links.keys."
         )
     return loaded
+
+
+def keys_of(kind: object) -> type | None:
+    """Parameter class of a kind of link; None of what names no installed kind."""
+    return maker(kind).keys if isinstance(kind, str) and kind in known_links() else None

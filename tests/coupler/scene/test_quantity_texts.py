@@ -71,6 +71,11 @@ def test_a_text_set_on_a_scene_is_its_number(path):
     assert with_text == load(SCENE, settings=assignments({path: number})).resolved
 
 
+def test_a_kind_of_link_that_is_no_text_is_refused():
+    with pytest.raises(SceneError, match=r"links.0.kind \[0.4, 0.0\] is not known"):
+        load("two_springs", settings=["links.0.kind=[0.4, 0.0]"])
+
+
 def test_a_word_of_the_command_line_needs_no_quotes():
     assert load(SCENE, settings=["window=1 ms"]).resolved["window"] == 1e-3
 
