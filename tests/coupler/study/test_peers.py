@@ -267,10 +267,14 @@ CASES = [(scene, name) for scene, path in library().items() for name in peers_of
 @pytest.mark.parametrize(("scene", "name"), CASES)
 def test_inputs_beside_scenes_are_sound(scene, name):
     folder, table = read_peer(*case(scene, name))
-    assert folder.name == name and len(table.run) >= 3
+    assert folder.name == name and len(table.run) >= 2
 
 
-@pytest.mark.parametrize(("scene", "name"), CASES)
+LONG = ("settling_packing",)  # half a minute
+RUN = [pytest.param(*c, marks=[pytest.mark.full] if c[0] in LONG else []) for c in CASES]
+
+
+@pytest.mark.parametrize(("scene", "name"), RUN)
 def test_programs_that_are_installed_solve_the_coarsest_case(scene, name, tmp_path):
     table = read_peer(*case(scene, name))[1]
     if missing := [c[0] for c in table.commands if c[0][0] != "@" and not executable(c[0])]:
@@ -278,5 +282,5 @@ def test_programs_that_are_installed_solve_the_coarsest_case(scene, name, tmp_pa
     (peer,) = read_peers([name], load(scene))
     row = peer.row(peer.runs[0], tmp_path, lambda: False, False)
     assert row["status"] == "done", row["cause"]
-    assert row["version"] and row["cpu"] > 0.0
-    assert max(row["relative"].values()) < 0.2
+    assert row["version"] and row["cpu"] > 0.0 and row["cpu_process"] > 0.0
+    assert max(filter(None, row["relative"].values())) < 0.2

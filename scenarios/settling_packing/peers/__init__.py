@@ -1,0 +1,1 @@
+"""Other programs on the settling packing: their inputs."""
