@@ -20,40 +20,76 @@ import math
 
 from numba import njit
 
-from quintet.components.shared.numba_options import INNER
+from quintet.components.shared.numba_options import LANEWISE
 
 
-@njit(**INNER)
-def contact_stiffness(area, spacing, modulus_i, thickness, modulus_j, scale):  # type: ignore[no-untyped-def]
-    """Stiffness [N/m] between a particle i and a face j.
+@njit(**LANEWISE)
+def layer_law(area, layer, element, scale, depth):  # type: ignore[no-untyped-def]
+    """Force and stiffness of a particle of a layer, pressed into a face by a depth [m].
 
     Parameters
     ----------
     area : float, m2
         Of the particle.
-    spacing, thickness : float, m
-        Of the layers of particles and of elements.
-    modulus_i, modulus_j : float, Pa
-        Longitudinal.
+    layer, element : float, m/Pa
+        h/M of the layers of particles and of elements.
     scale : float, 1
         f.
+
+    Returns
+    -------
+    As `sphere_law`.
     """
-    return scale * area / (spacing / modulus_i + thickness / modulus_j)
+    stiff = scale * area / (layer + element)
+    return stiff * depth, 0.5 * stiff * depth * depth, stiff, stiff, 0.0
 
 
-@njit(**INNER)
+@njit(**LANEWISE)
+def sphere_law(radius, mass, inverse_moment, modulus, shear, friction, depth, closing):  # type: ignore[no-untyped-def]
+    """Force and stiffness of a sphere pressed into a face, and largest ones in the coming impact.
+
+    Parameters
+    ----------
+    radius, mass, inverse_moment : float, m, kg and 1/(kg m2)
+    modulus, shear : float, Pa
+        f E* and f G*.
+    friction : float, 1
+        Coefficient.
+    depth, closing : float, m and m/s
+        Present overlap, and the velocity at which it grows.
+
+    Returns
+    -------
+    push, stored : float, N and J
+        Normal force, and its energy.
+    side : float, N/m
+        Stiffness along the face.
+    most : float, N/m
+        Largest stiffness along the normal, as deep as the particle may come.
+    aside : float, 1/s2
+        ω² of a sphere that sticks and turns; 0 without friction.
+    """
+    stiff, ratio = hertz_stiffness(modulus, radius, depth), 4.0 * shear / modulus
+    push, come = 2.0 / 3.0 * stiff * depth, deepest_overlap(depth, closing, modulus, radius, mass)
+    most, aside = hertz_stiffness(modulus, radius, come), 0.0
+    if friction > 0.0:
+        aside = ratio * most * (1.0 / mass + radius * radius * inverse_moment)
+    return push, 0.4 * push * depth, ratio * stiff, most, aside
+
+
+@njit(**LANEWISE)
 def in_series(modulus_i, modulus_j):  # type: ignore[no-untyped-def]
     """Modulus [Pa] of two that act one behind the other: 1/M = 1/M_i + 1/M_j."""
     return modulus_i * modulus_j / (modulus_i + modulus_j)
 
 
-@njit(**INNER)
+@njit(**LANEWISE)
 def hertz_stiffness(modulus, radius, depth):  # type: ignore[no-untyped-def]
     """S_n [N/m] of moduli E* [Pa], a radius [m] and an overlap [m]; Johnson (1985), eq. 4.23."""
     return 2.0 * modulus * math.sqrt(radius * depth)
 
 
-@njit(**INNER)
+@njit(**LANEWISE)
 def deepest_overlap(depth, closing, modulus, radius, mass):  # type: ignore[no-untyped-def]
     """Overlap [m] at which Hertz's force stops a sphere before a body at rest.
 
@@ -72,39 +108,41 @@ def deepest_overlap(depth, closing, modulus, radius, mass):  # type: ignore[no-u
     return (depth**2.5 + stopped) ** 0.4
 
 
-@njit(**INNER)
-def stretch_anew(slip, held, stiff):  # type: ignore[no-untyped-def]
-    """Energy [J] that a spring holds as its stiffness [N/m] changes; shorten a stiffer spring.
+@njit(**LANEWISE)
+def change_stiffness(slip, held, i, stiff):  # type: ignore[no-untyped-def]
+    """Change the stiffness of a tangential spring; return the energy [J] that is lost.
 
     A stiffer spring keeps its force and a softer one its stretch, so that energy is lost, never
     gained (Walton & Braun, J. Rheol. 30 (1986) 949).
 
     Parameters
     ----------
-    slip : (3,) float array, m
-        Stretch of the spring; changed.
-    held : float, J
-        That it held with its former stiffness.
+    slip : (n, 3) float array, m
+        Stretches of springs; that of a stiffer one is shortened.
+    held : (n,) float array, J
+        What they held with their former stiffness.
+    i : int
+        Which one.
     stiff : float, N/m
         Present stiffness.
     """
-    square = slip[0] * slip[0] + slip[1] * slip[1] + slip[2] * slip[2]
-    if stiff * square > 2.0 * held:
-        share = 2.0 * held / (stiff * square)
+    square = slip[i, 0] * slip[i, 0] + slip[i, 1] * slip[i, 1] + slip[i, 2] * slip[i, 2]
+    if stiff * square > 2.0 * held[i]:
+        share = 2.0 * held[i] / (stiff * square)
         for d in range(3):
-            slip[d] *= share
+            slip[i, d] *= share
         square *= share * share
-    return 0.5 * stiff * square
+    return held[i] - 0.5 * stiff * square
 
 
-@njit(**INNER)
-def friction(slip, slid, n, stiff, limit):  # type: ignore[no-untyped-def]
-    """Stretch the tangential spring by a step's motion, within Coulomb's limit.
+@njit(**LANEWISE)
+def friction(slip, i, slid, n, stiff, limit):  # type: ignore[no-untyped-def]
+    """Stretch a tangential spring by a step's motion, within Coulomb's limit.
 
     Parameters
     ----------
-    slip : (3,) float array, m
-        Stretch of the spring; changed.
+    slip : (n, 3) float array, m
+        Stretches of springs; that of number i is changed.
     slid : (3,) float array, m
         Motion of the particle over the face in the step.
     n : (3,) float array
@@ -122,20 +160,20 @@ def friction(slip, slid, n, stiff, limit):  # type: ignore[no-untyped-def]
     """
     along, moved = 0.0, 0.0
     for d in range(3):
-        along, moved = along + slip[d] * n[d], moved + slid[d] * n[d]
+        along, moved = along + slip[i, d] * n[d], moved + slid[d] * n[d]
     square = 0.0
     for d in range(3):
-        slip[d] -= along * n[d]
+        slip[i, d] -= along * n[d]
         slid[d] -= moved * n[d]
-        square += (slip[d] + slid[d]) ** 2
+        square += (slip[i, d] + slid[d]) ** 2
     stretch, share = math.sqrt(square), 1.0
     if stiff * stretch > limit:
         share = limit / (stiff * stretch)
     energy, dissipated = 0.0, 0.0
     for d in range(3):
-        tried = slip[d] + slid[d]
+        tried = slip[i, d] + slid[d]
         stretched = share * tried
-        dissipated += 0.5 * stiff * (slip[d] + stretched) * (tried - stretched)
+        dissipated += 0.5 * stiff * (slip[i, d] + stretched) * (tried - stretched)
         energy += 0.5 * stiff * stretched * stretched
-        slip[d] = stretched
+        slip[i, d] = stretched
     return energy, dissipated

@@ -5,13 +5,14 @@ from dataclasses import astuple, dataclass, replace
 
 import numpy as np
 
+from quintet.components.shared.contact.footprint import measure
 from quintet.components.shared.contact.kernels import Loads, Points, Surface, furthest_from, touch
 from quintet.components.shared.contact.moduli import (
     longitudinal_modulus,
     plane_modulus,
     tangential_modulus,
 )
-from quintet.components.shared.contact.search import Near, list_near
+from quintet.components.shared.contact.search import Near, list_near, near_of, no_faces
 from quintet.components.shared.contact.stable_step import highest_square
 from quintet.components.shared.geometry.face_projection import cells_of
 from quintet.interfaces.component import Array, Fields
@@ -73,7 +74,7 @@ class PenaltyContact:
         self.faces = modulus, tangential_modulus(*moduli), *layer
         is_planar = bool((self.corner[:, 0] == self.corner[:, 3]).all())
         points = 1 if spheres else int(of["points"].max())
-        self.spread = np.array([points, 1 if is_planar else points])
+        self.across = np.array([points, 1 if is_planar else points])
         self.safety, self.step_of_faces = float(of["safety"].min()), float(of["step"].min())
         nodes = len(self.mass)
         self.active = np.ones(len(self.corner))
@@ -117,8 +118,10 @@ class PenaltyContact:
         moving = (self.position - self.before) / last if last else np.zeros((nodes, 3))
         near, apart = self._list(points, moving, last)
         self.reaction, stiffness = np.zeros((nodes, 3)), np.zeros(nodes)
-        surface = Surface(self.corner, *self.faces, self.position, moving, self.spread)
+        surface = Surface(self.corner, *self.faces, self.position, moving)
         loads = Loads(self.reaction, stiffness, self.slip, self.held, self.kicked)
+        places = self.corner, self.position, self.across, self.slack
+        passed = measure(points.place, points.radius, near, *places)
         sums = touch(points, surface, near, last, dt, loads)
         self.before, numbers.last = self.position.copy(), dt
         numbers.work -= dt * float((self.reaction * self.velocity).sum())
@@ -126,7 +129,7 @@ class PenaltyContact:
         numbers.dissipated += sums.dissipated
         numbers.points, numbers.nodes = sums.points, sums.nodes
         numbers.impact, numbers.spread = sums.impact, max(numbers.spread, sums.spread)
-        numbers.deepest = max(numbers.deepest, sums.depth)
+        numbers.deepest = max(numbers.deepest, passed, sums.depth)
         numbers.limit = min(sums.limit, apart)
 
     def _list(self, points: Points, moving: Array, dt: float) -> tuple[Near, float]:
@@ -144,16 +147,14 @@ class PenaltyContact:
                 return self.near, apart
         self.kicked[:] = 0.0
         self.slack, place = self.radius, self.position
+        several = 4 * int(self.across.prod())
         faces = np.flatnonzero(self.active)
         if not len(faces) or not np.isfinite(place).all():
-            nothing = np.zeros(0, np.int64)
-            self.near = Near(nothing, np.zeros(1, np.int64), nothing, nothing, nothing)
+            self.near = no_faces(several)
         else:
             cells = cells_of(np.ascontiguousarray(place[self.corner[faces]]))
             reach = 2.0 * self.radius + self.slack
-            row, begin, near = list_near(points.place, reach, cells, faces)
-            listed, face = np.unique(near, return_inverse=True)
-            self.near = Near(row, begin, face, listed, np.full(len(row), -1))
+            self.near = near_of(*list_near(points.place, reach, cells, faces), several)
         self._let_go(points.identity[self.near.row])
         self._note_opened(points)
         return self.near, apart

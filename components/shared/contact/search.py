@@ -14,13 +14,15 @@ from quintet.components.shared.geometry.face_kernels import (
     Cells,
     Whole,
     box_distance,
-    foot,
+    foot_within,
     place_on,
 )
-from quintet.components.shared.numba_options import EXACT, INNER
+from quintet.components.shared.numba_options import EXACT, LANEWISE
 
 HALF_DEPTH = 0.5  # m along y, of edges in a plane
 ON = 1e-3  # of a radius: a particle whose foot is so little beside a face counts as above it
+SURE = 0.25  # of a difference of distances, both of which change by at most what bodies move
+SETTLED = 1e-12  # change of ξ and η at which the search for a nearest point ends
 TIED = 1.0 + 1e-12  # squared distances that differ by less may be equal but for rounding
 
 
@@ -35,15 +37,34 @@ class Near(NamedTuple):
     begin: Whole  # (r + 1,)
     face: Whole
     listed: Whole  # (u,) faces that are near any particle, rising
-    last: Whole  # (r,) which of the listed ones was the nearest in the last step; -1 at first
-
-
-class Listed(NamedTuple):
-    """Places of the listed faces in this step."""
-
-    x: Array  # (u, 4, 3) m, corners
+    last: Whole  # (r,) which of the listed ones was the nearest; -1 at first
+    sure: Array  # (r,) m, slack at which another one may be nearer
+    # Written in every step.
+    x: Array  # (u, 4, 3) m, corners of the listed faces
     lowest: Array  # (u, 3) m, of the boxes around them
     highest: Array  # (u, 3) m
+    nodes: Whole  # (r, 4 or more) nodes that hold each particle
+    weight: Array  # (r, 4 or more) 1, their shares, all 0 of a particle that is not near
+    gap: Array  # (r,) m, ∞ of such a one
+    normal: Array  # (r, 3) 1, from the face to the particle
+
+
+def no_faces(several: int) -> Near:
+    """Nothing near."""
+    none = np.zeros(0, np.int64)
+    return near_of(none, np.zeros(1, np.int64), none, several)
+
+
+def near_of(row: Whole, begin: Whole, face: Whole, several: int) -> Near:
+    """Faces near particles, as `list_near` gives them, each particle held by several nodes."""
+    listed, face = np.unique(face, return_inverse=True)
+    rows, count = len(row), len(listed)
+    corners, boxes = np.empty((count, 4, 3)), np.empty((2, count, 3))
+    nodes, weight = np.zeros((rows, several), np.int64), np.zeros((rows, several))
+    last, sure, gap, normal = np.full(rows, -1), np.zeros(rows), np.zeros(rows), np.zeros((rows, 3))
+    return Near(
+        row, begin, face, listed, last, sure, corners, *boxes, nodes, weight, gap, normal
+    )  # fmt: skip
 
 
 @njit(**EXACT)
@@ -96,12 +117,11 @@ def list_near(place: Array, reach: float, cells: Cells, faces: Whole) -> tuple[W
     return np.array(rows, np.int64), np.array(begin, np.int64), np.array(listed, np.int64)
 
 
-@njit(**EXACT)
-def places_of_listed(near: Near, corner: Whole, position: Array) -> Listed:
-    """Gather the corners of listed faces, of nodes at (k, 3) m, and the boxes around them."""
-    count = near.listed.shape[0]
-    x, lowest, highest = np.empty((count, 4, 3)), np.empty((count, 3)), np.empty((count, 3))
-    for f in range(count):
+@njit(**LANEWISE)
+def place_listed(near, corner, position):  # type: ignore[no-untyped-def]
+    """Write the corners of listed faces, of nodes at (k, 3) m, and the boxes around them."""
+    x, lowest, highest = near.x, near.lowest, near.highest
+    for f in range(near.listed.shape[0]):
         for c in range(4):
             node = corner[near.listed[f], c]
             for d in range(3):
@@ -109,57 +129,65 @@ def places_of_listed(near: Near, corner: Whole, position: Array) -> Listed:
         for d in range(3):
             lowest[f, d] = min(min(x[f, 0, d], x[f, 1, d]), min(x[f, 2, d], x[f, 3, d]))
             highest[f, d] = max(max(x[f, 0, d], x[f, 1, d]), max(x[f, 2, d], x[f, 3, d]))
-    return Listed(x, lowest, highest)
 
 
-@njit(**INNER)
-def away_from(p, listed, f):  # type: ignore[no-untyped-def]
+@njit(**LANEWISE)
+def away_from(p, near, f):  # type: ignore[no-untyped-def]
     """Squared distance [m2] of a point from the box around a listed face."""
     away = 0.0
     for d in range(3):
-        away += max(max(listed.lowest[f, d] - p[d], p[d] - listed.highest[f, d]), 0.0) ** 2
+        away += max(max(near.lowest[f, d] - p[d], p[d] - near.highest[f, d]), 0.0) ** 2
     return away
 
 
-@njit(**INNER)
-def nearest(p, near, q, listed, reach, room):  # type: ignore[no-untyped-def]
+@njit(**LANEWISE)
+def nearest(p, near, q, reach, slack, room):  # type: ignore[no-untyped-def]
     """Nearest of the faces of row q within a reach, -1 if there is none; ξ and η.
 
     That of the last step is tried first: it usually is the nearest, and the boxes of the others are
-    further away.
+    further away. How much further is noted: until particles and faces may have approached each
+    other by a quarter of it, the others are not looked at. `slack` is by how much they still may;
+    `room` is left as `foot_within` leaves it.
     """
-    first, least = near.last[q], math.inf
-    if first < 0:
+    face, least = near.last[q], math.inf
+    if face >= 0 and slack > near.sure[q]:
+        xi, eta, d2 = foot_within(p, near.x[face], SETTLED, room)
+    else:
+        if face < 0:
+            for at in range(near.begin[q], near.begin[q + 1]):
+                away = away_from(p, near, near.face[at])
+                if away < least:
+                    face, least = near.face[at], away
+        face, xi, eta, d2 = nearest_from(p, face, near, q, room)
+        near.last[q], least = face, math.inf
         for at in range(near.begin[q], near.begin[q + 1]):
-            away = away_from(p, listed, near.face[at])
-            if away < least:
-                first, least = near.face[at], away
-    face, xi, eta, _ = nearest_from(p, first, near, q, listed, reach * reach, room)
-    near.last[q] = first if face < 0 else face
+            if near.face[at] != face:
+                least = min(least, away_from(p, near, near.face[at]))
+        near.sure[q] = slack - SURE * (math.sqrt(least) - math.sqrt(d2))
+        place_on(near.x[face], xi, eta, room)
+    if d2 >= reach * reach:
+        face = -1
     return face, xi, eta
 
 
-@njit(**INNER)
-def nearest_from(p, first, near, q, listed, reach, room):  # type: ignore[no-untyped-def]
+@njit(**LANEWISE)
+def nearest_from(p, first, near, q, room):  # type: ignore[no-untyped-def]
     """Nearest of the faces of row q, of which one is tried first; ξ, η and the squared distance.
 
-    Faces as far as a squared `reach` [m2] or further do not count; -1 if there are no others. Of
-    equally near faces the first one counts, whichever was tried first.
+    Of equally near faces the first one counts, whichever was tried first.
     """
-    best, face = reach, -1
-    xi, eta, d2 = foot(p, listed.x[first], room)
-    if d2 < best:
-        best, face = d2, first
+    face = first
+    xi, eta, best = foot_within(p, near.x[face], SETTLED, room)
     for at in range(near.begin[q], near.begin[q + 1]):
         f = near.face[at]
-        if f != first and away_from(p, listed, f) <= TIED * best:
-            a, b, d2 = foot(p, listed.x[f], room)
+        if f != first and away_from(p, near, f) <= TIED * best:
+            a, b, d2 = foot_within(p, near.x[f], SETTLED, room)
             if d2 < best or (d2 == best and f < face):
                 best, face, xi, eta = d2, f, a, b
     return face, xi, eta, best
 
 
-@njit(**INNER)
+@njit(**LANEWISE)
 def normal_at(x, room, out):  # type: ignore[no-untyped-def]
     """Write the outward normal (3,) of a face (4, 3), of its tangents in `room`."""
     tx, ty, tz = room[1, 0], room[1, 1], room[1, 2]
@@ -175,83 +203,25 @@ def normal_at(x, room, out):  # type: ignore[no-untyped-def]
         out[d] = out[d] / length if length > 0.0 else 0.0
 
 
-@njit(**INNER)
-def gap_of(p, x, xi, eta, radius, room, n):  # type: ignore[no-untyped-def]
+@njit(**LANEWISE)
+def gap_of(p, x, radius, room, n):  # type: ignore[no-untyped-def]
     """Gap [m] between a particle and a face, ∞ where they cannot touch; direction into `n` (3,).
 
+    `room` has the nearest point and the tangents there, as `foot_within` leaves them.
     Above the face the direction is that from its nearest point; a particle whose centre is below
     the face is pushed along the normal, if it is by a radius at most.
     """
-    place_on(x, xi, eta, room)
     normal_at(x, room, n)
     above, square = 0.0, 0.0
     for d in range(3):
         above += (p[d] - room[0, d]) * n[d]
         square += (p[d] - room[0, d]) ** 2
-    distance = math.sqrt(square)
     if above > 0.0:
+        distance = math.sqrt(square)
         for d in range(3):
             n[d] = (p[d] - room[0, d]) / distance
-        return distance - radius
-    beside = math.sqrt(max(square - above * above, 0.0))
-    return above - radius if beside <= ON * radius else math.inf
-
-
-@njit(**INNER)
-def write_shares(corner, xi, eta, share, nodes, weight, at):  # type: ignore[no-untyped-def]
-    """Write the nodes (4,) of a face and shares of its shape functions at ξ and η, from `at` on."""
-    for c in range(4):
-        nodes[at + c] = corner[c]
-    weight[at], weight[at + 1] = (1.0 - xi) * (1.0 - eta), (1.0 + xi) * (1.0 - eta)
-    weight[at + 2], weight[at + 3] = (1.0 + xi) * (1.0 + eta), (1.0 - xi) * (1.0 + eta)
-    for c in range(4):
-        weight[at + c] *= 0.25 * share
-
-
-@njit(**INNER)
-def spread_out(p, face, near, q, listed, corner, spread, radius, room, n, nodes, weight):  # type: ignore[no-untyped-def]
-    """Write nodes and weights of the points across a particle that lies on a face.
-
-    The points lie in the plane of its normal, in rows along the face's first side and across it;
-    of edges only along it. Each has the nearest face of its own.
-
-    Parameters
-    ----------
-    spread : two int
-        Points along both directions.
-
-    Returns
-    -------
-    bool
-        Whether all points lie on faces; what was written is of no use otherwise.
-    """
-    tangent, side, point = np.empty(3), np.empty(3), np.empty(3)
-    along, square, at = 0.0, 0.0, 0
-    for d in range(3):
-        tangent[d] = listed.x[face, 1, d] - listed.x[face, 0, d]
-        along += tangent[d] * n[d]
-    for d in range(3):
-        tangent[d] -= along * n[d]
-        square += tangent[d] * tangent[d]
-    for d in range(3):
-        tangent[d] /= math.sqrt(square)
-    for d in range(3):
-        a, b = (d + 1) % 3, (d + 2) % 3
-        side[d] = n[a] * tangent[b] - n[b] * tangent[a]
-    for i in range(spread[0]):
-        for j in range(spread[1]):
-            x, y = (2 * i + 1) / spread[0] - 1.0, (2 * j + 1) / spread[1] - 1.0
-            for d in range(3):
-                point[d] = p[d] + radius * (x * tangent[d] + y * side[d])
-            f, xi, eta, _ = nearest_from(point, face, near, q, listed, math.inf, room)
-            place_on(listed.x[f], xi, eta, room)
-            above, away = 0.0, 0.0
-            for d in range(3):
-                above += (point[d] - room[0, d]) * n[d]
-                away += (point[d] - room[0, d]) ** 2
-            if away - above * above > (ON * radius) ** 2:
-                return False
-            share = 1.0 / (spread[0] * spread[1])
-            write_shares(corner[near.listed[f]], xi, eta, share, nodes, weight, at)
-            at += 4
-    return True
+        gap = distance - radius
+    else:
+        beside = math.sqrt(max(square - above * above, 0.0))
+        gap = above - radius if beside <= ON * radius else math.inf
+    return gap

@@ -71,7 +71,7 @@ def fill_cells(corner: Array, low: Array, size: float, count: Whole) -> tuple[Wh
     return begin, faces
 
 
-@njit(**EXACT)
+@njit(forceinline=True, **EXACT)
 def place_on(x, xi, eta, out):  # type: ignore[no-untyped-def]
     """Write the place (3,) m on a face (4, 3), and its derivatives (2, 3) there, into (3, 3)."""
     for d in range(3):
@@ -84,9 +84,16 @@ def place_on(x, xi, eta, out):  # type: ignore[no-untyped-def]
 
 @njit(**EXACT)
 def foot(p, x, room):  # type: ignore[no-untyped-def]
-    """Local coordinates of the point of a face that is nearest to p, and their distance squared.
+    """Local coordinates of the point of a face that is nearest to p, and their distance squared."""
+    return foot_within(p, x, SETTLED, room)
 
-    Gauss and Newton's iteration, kept on the face; `room` (3, 3) is written over.
+
+@njit(forceinline=True, **EXACT)
+def foot_within(p, x, settled, room):  # type: ignore[no-untyped-def]
+    """As `foot`, with the change of ξ and η at which the iteration ends.
+
+    Gauss and Newton's iteration, kept on the face; `room` (3, 3) gets the point and the derivatives
+    there, as by `place_on`.
     """
     xi, eta = 0.0, 0.0
     for _ in range(STEPS):
@@ -107,7 +114,7 @@ def foot(p, x, room):  # type: ignore[no-untyped-def]
             eta = min(max(at + (gs - ts * (xi - before)) / ss, -1.0), 1.0)
             if abs(eta) == 1.0:
                 xi = min(max(before + (gt - ts * (eta - at)) / tt, -1.0), 1.0)
-        if abs(xi - before) <= SETTLED and abs(eta - at) <= SETTLED:
+        if abs(xi - before) <= settled and abs(eta - at) <= settled:
             break
     place_on(x, xi, eta, room)
     d2 = 0.0

@@ -70,6 +70,28 @@ def test_a_particle_that_is_spread_over_faces_keeps_force_and_moment():
     np.testing.assert_array_equal(*reactions)
 
 
+def test_the_nearest_face_is_the_same_whether_or_not_the_others_are_looked_at():
+    rng = np.random.default_rng(5)
+    place = rng.uniform([0.0, 0.0, 0.2], [4.0, 2.0, 0.6], (60, 3))
+    velocity = 0.05 * rng.standard_normal((60, 3))
+    looked, quick = contact_of(60), contact_of(60)
+    skipped = 0
+    for step in range(40):
+        node = NODES + 0.01 * np.sin(0.2 * step + np.arange(24.0)).reshape(8, 3)
+        reactions = []
+        for contact in (looked, quick):
+            points = points_at(place, velocity.copy())
+            take(contact, node)
+            if contact is looked and contact.near is not None:
+                contact.near.sure[:] = np.inf
+            contact.kick(points, 0.05)
+            reactions.append(contact.reaction)
+        np.testing.assert_array_equal(*reactions)
+        skipped += int((quick.near.sure < quick.slack).sum())
+        place = place + 0.05 * velocity
+    assert skipped > 500
+
+
 def test_triangles_and_edges_in_a_plane_are_touched_like_squares():
     node = np.array([[0, 0, 0], [2, 0, 0], [2, 2, 0]], float)
     triangle = contact_of(1, node, np.array([[0, 1, 2, 2]]))
@@ -95,7 +117,7 @@ def test_of_two_faces_at_the_same_distance_the_first_is_touched():
         contact = contact_of(1, friction=0.3)
         take(contact)
         contact.kick(points_at([(1.9, 1.0, 0.3)]), 1e-3)
-        contact.near.last[:] = first
+        contact.near.last[:], contact.near.sure[:] = first, np.inf
         contact.kick(points_at(place, np.ones((1, 3))), 1e-3)
         kept.append([contact.near.last.copy(), contact.reaction.copy(), contact.slip.copy()])
     assert kept[0][0] == 0

@@ -1,0 +1,152 @@
+"""Compiled search for what holds a particle: the face below it, or all faces that it covers."""
+
+import math
+
+import numpy as np
+from numba import njit
+
+from quintet.components.shared.contact.search import (
+    ON,
+    Near,
+    gap_of,
+    nearest,
+    nearest_from,
+    place_listed,
+)
+from quintet.components.shared.geometry.face_kernels import Array, Whole, place_on
+from quintet.components.shared.numba_options import EXACT, LANEWISE
+
+
+@njit(**EXACT)
+def measure(
+    place: Array, radii: Array, near: Near, corner: Whole, position: Array, across: Whole,
+    slack: float,
+) -> float:  # fmt: skip
+    """Write gaps, normals, nodes and weights of particles near faces.
+
+    Parameters
+    ----------
+    place : (n, 3 or more) float array, m
+    radii : (n,) float array, m
+    near : Near
+        Written.
+    corner : (m, 4) int array
+        Nodes of the faces.
+    position : (k, 3) float array, m
+        Of the nodes.
+    across : (2,) int array
+        Points across a particle, along both directions.
+    slack : float, m
+        By which particles and faces may still approach each other, before others are near.
+
+    Returns
+    -------
+    float, m
+        Depth of the deepest particle that has passed through a face.
+    """
+    room, n, at, passed = np.empty((3, 3)), np.empty(3), np.empty(3), 0.0
+    place_listed(near, corner, position)
+    for q in range(near.row.shape[0]):
+        radius, gap = radii[near.row[q]], math.inf
+        for d in range(3):
+            at[d] = place[near.row[q], d]
+        f, xi, eta = nearest(at, near, q, 2.0 * radius, slack, room)
+        if f >= 0:
+            gap = gap_of(at, near.x[f], radius, room, n)
+            if gap < -2.0 * radius:
+                passed, gap = max(passed, -gap), math.inf
+        if gap > radius:
+            for c in range(near.weight.shape[1]):
+                near.weight[q, c] = 0.0
+        elif near.weight.shape[1] > 4:
+            gap = hold(at, f, xi, eta, near, q, corner, position, across, radius, gap, room, n)
+        else:
+            write_shares(corner, near.listed[f], xi, eta, 1.0, near.nodes, near.weight, q, 0)
+        near.gap[q] = gap
+        for d in range(3):
+            near.normal[q, d] = n[d]
+    return passed
+
+
+@njit(**LANEWISE)
+def hold(p, f, xi, eta, near, q, corner, position, across, radius, gap, room, n):  # type: ignore[no-untyped-def]
+    """Write the nodes that hold a particle on a listed face, and their shares; its gap [m].
+
+    If all that it covers are faces, it is held at points across it, and its gap is the mean of
+    theirs; else at its nearest point, at ξ and η.
+    """
+    nodes, weight = near.nodes, near.weight
+    if spread_out(p, f, near, q, corner, across, radius, room, n):
+        gap = -radius
+        for c in range(weight.shape[1]):
+            for d in range(3):
+                gap += weight[q, c] * n[d] * (p[d] - position[nodes[q, c], d])
+    else:
+        write_shares(corner, near.listed[f], xi, eta, 1.0, nodes, weight, q, 0)
+        for c in range(4, weight.shape[1]):
+            weight[q, c] = 0.0
+    return gap
+
+
+@njit(**LANEWISE)
+def write_shares(corner, face, xi, eta, share, nodes, weight, q, at):  # type: ignore[no-untyped-def]
+    """Write the nodes of a face, and shares of its shape functions at ξ and η, from `at` on."""
+    for c in range(4):
+        nodes[q, at + c] = corner[face, c]
+    share *= 0.25
+    weight[q, at], weight[q, at + 1] = (
+        share * (1.0 - xi) * (1.0 - eta),
+        share * (1.0 + xi) * (1.0 - eta),
+    )
+    weight[q, at + 2], weight[q, at + 3] = (
+        share * (1.0 + xi) * (1.0 + eta),
+        share * (1.0 - xi) * (1.0 + eta),
+    )
+
+
+@njit(**LANEWISE)
+def spread_out(p, face, near, q, corner, across, radius, room, n):  # type: ignore[no-untyped-def]
+    """Hold a particle that lies on a face at the points across it.
+
+    The points lie in the plane of its normal, in rows along the face's first side and across it;
+    of edges only along it. Each has the nearest face of its own.
+
+    Parameters
+    ----------
+    across : two int
+        Points along both directions.
+
+    Returns
+    -------
+    bool
+        Whether all points lie on faces; what was written is of no use otherwise.
+    """
+    tangent, side, point = np.empty(3), np.empty(3), np.empty(3)
+    along, square, at, all_on = 0.0, 0.0, 0, True
+    for d in range(3):
+        tangent[d] = near.x[face, 1, d] - near.x[face, 0, d]
+        along += tangent[d] * n[d]
+    for d in range(3):
+        tangent[d] -= along * n[d]
+        square += tangent[d] * tangent[d]
+    for d in range(3):
+        tangent[d] /= math.sqrt(square)
+    for d in range(3):
+        a, b = (d + 1) % 3, (d + 2) % 3
+        side[d] = n[a] * tangent[b] - n[b] * tangent[a]
+    for i in range(across[0]):
+        for j in range(across[1]):
+            x, y = (2 * i + 1) / across[0] - 1.0, (2 * j + 1) / across[1] - 1.0
+            for d in range(3):
+                point[d] = p[d] + radius * (x * tangent[d] + y * side[d])
+            f, xi, eta, _ = nearest_from(point, face, near, q, room)
+            place_on(near.x[f], xi, eta, room)
+            above, away = 0.0, 0.0
+            for d in range(3):
+                above += (point[d] - room[0, d]) * n[d]
+                away += (point[d] - room[0, d]) ** 2
+            all_on &= away - above * above <= (ON * radius) ** 2
+            share = 1.0 / (across[0] * across[1])
+            write_shares(corner, near.listed[f], xi, eta, share, near.nodes, near.weight, q, at)
+            at += 4
+    return all_on
