@@ -192,8 +192,8 @@ def test_a_sphere_bounces_off_elements_with_momentum_and_energy(tmp_path):
 
 
 def test_a_sphere_that_slides_goes_on_to_roll(tmp_path):
-    # Friction takes two sevenths of the velocity of a stiff sphere, whatever its coefficient; of a
-    # soft one, which is pressed in, v0 / (1 + 2/5 R²/L²) is left, with L from its centre to the face.
+    # Friction takes two sevenths of the velocity of a stiff sphere, whatever its coefficient. Of a
+    # soft one v0 / (1 + 2/5 R²/L²) is left, with L from its centre to the face.
     weight = 1000.0 * 4.0 / 3.0 * np.pi * SPACING**3
     pressed = (weight / (4.0 / 3.0 * 0.5e5 * SPACING**0.5)) ** (2.0 / 3.0)  # m, by Hertz
     sphere = _sphere(0.2 + SPACING - pressed, [0.3, 0.0, 0.0], gravity=[0.0, 0.0, -1.0])
@@ -202,7 +202,11 @@ def test_a_sphere_that_slides_goes_on_to_roll(tmp_path):
     trace = _couple(tmp_path, sphere, slab, 1.2, friction=0.3)
     speed = trace.history("block", "motion.velocity")[:, 0, 0]
     spin = trace.history("block", "motion.angular_velocity")[:, 0, 1]
-    late, lever = trace.times > 0.8, SPACING - pressed
+    lever, shear = SPACING - pressed, 0.125 * 1e5  # m; Pa, G* of both
+    # It goes on to rock on its spring; two whole periods are averaged.
+    stiff = 8.0 * shear * (SPACING * pressed) ** 0.5
+    rocking = stiff * (1.0 + 2.5 * (lever / SPACING) ** 2) / weight  # weight: of 1 m/s2
+    late = trace.times > 1.2 - 2.0 * 2.0 * np.pi / rocking**0.5
     rolling = 0.3 / (1.0 + 0.4 * (SPACING / lever) ** 2)
     assert speed[late].mean() == pytest.approx(rolling, rel=0.01)
     assert (spin[late] * lever).mean() == pytest.approx(rolling, rel=0.01)
