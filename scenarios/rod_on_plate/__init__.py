@@ -1,1 +1,1 @@
-"""A wave passes from finite elements to particles that are glued to them, and back: scene."""
+"""A rod of SPH particles strikes a plate of finite elements in contact: scene."""
