@@ -1,0 +1,1 @@
+"""A steel sphere strikes a thin plate of finite elements: Hertz's contact and bending waves."""
