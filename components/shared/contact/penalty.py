@@ -154,7 +154,8 @@ class PenaltyContact:
         else:
             cells = cells_of(np.ascontiguousarray(place[self.corner[faces]]))
             reach = 2.0 * self.radius + self.slack
-            self.near = near_of(*list_near(points.place, reach, cells, faces), several)
+            row, begin, face = list_near(points.place, reach, cells, faces)
+            self.near = near_of(row, begin, face, several)
         self._let_go(points.identity[self.near.row])
         self._note_opened(points)
         return self.near, apart

@@ -59,12 +59,21 @@ def near_of(row: Whole, begin: Whole, face: Whole, several: int) -> Near:
     """Faces near particles, as `list_near` gives them, each particle held by several nodes."""
     listed, face = np.unique(face, return_inverse=True)
     rows, count = len(row), len(listed)
-    corners, boxes = np.empty((count, 4, 3)), np.empty((2, count, 3))
-    nodes, weight = np.zeros((rows, several), np.int64), np.zeros((rows, several))
-    last, sure, gap, normal = np.full(rows, -1), np.zeros(rows), np.zeros(rows), np.zeros((rows, 3))
     return Near(
-        row, begin, face, listed, last, sure, corners, *boxes, nodes, weight, gap, normal
-    )  # fmt: skip
+        row=row,
+        begin=begin,
+        face=face,
+        listed=listed,
+        last=np.full(rows, -1),
+        sure=np.zeros(rows),
+        x=np.empty((count, 4, 3)),
+        lowest=np.empty((count, 3)),
+        highest=np.empty((count, 3)),
+        nodes=np.zeros((rows, several), np.int64),
+        weight=np.zeros((rows, several)),
+        gap=np.zeros(rows),
+        normal=np.zeros((rows, 3)),
+    )
 
 
 @njit(**EXACT)
