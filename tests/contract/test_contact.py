@@ -136,6 +136,14 @@ def test_the_window_is_the_predicted_step_once_contact_is_near(tmp_path):
     assert np.diff(trace.times)[2:].max() <= min(block.stable_dt(), slab.stable_dt()) * 1.0001
 
 
+@pytest.mark.parametrize("stiffness", [1.0, 4.0])
+def test_energy_is_kept_at_the_predicted_step(tmp_path, stiffness):
+    more = {"friction": 0.3, "side": SPEED, "courant": 0.47}  # both sides bear the step of contact
+    trace = _impact(tmp_path, safety=1.0, stiffness=stiffness, **more)
+    energy = trace.energy() + trace.components["block"].totals().dissipated
+    assert energy == pytest.approx(trace.energies[0], rel=0.03)
+
+
 def test_contact_breaks_down_beyond_the_predicted_step(tmp_path):
     # The prediction adds bounds of both solids and of contact: a bit less than the true limit.
     with pytest.raises(ComponentFailed, match="must"):
