@@ -29,6 +29,8 @@ NOT_RUN = {
     "floating_hull",
     "shock_layer_oblique",
     "dam_break_cubes",
+    "sloshing",
+    "spheric_10",
 }
 
 

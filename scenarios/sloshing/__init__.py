@@ -1,0 +1,1 @@
+"""Water sloshes in a tank after a push: scene, exact by linear theory."""
