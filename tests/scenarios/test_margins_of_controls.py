@@ -30,7 +30,6 @@ NOT_RUN = {
     "shock_layer_oblique",
     "dam_break_cubes",
     "sloshing",
-    "spheric_10",
 }
 
 
