@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from fluid_params import fluid_params
 
-from quintet.components.sph_fluid import build
+from quintet.components.sph_fluid.boundary.walls import wall_points
 from quintet.components.sph_fluid.component import SphFluid
 
 TANK = {
@@ -105,7 +105,7 @@ def test_obstacles_are_mirrored_in_their_wet_faces():
     box = ((0.3, 0.0, 0.0), (0.5, 0.4, 0.2))
     fluid = (((0.0, 0.0, 0.0), (0.3, 0.4, 0.4)),)
     one = params(boundary__obstacles=(box,), fluid=fluid)
-    count = len(build.wall_points(one))
+    count = len(wall_points(one))
     particle, mirror = walls(SphFluid(one))
     place, mirror = particle[count:, :3], mirror[count:]
     assert len(place) > 0

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from fluid_params import fluid_params
 
-from quintet.components.sph_fluid import build
+from quintet.components.sph_fluid.boundary.walls import wall_points
 from quintet.components.sph_fluid.component import SphFluid
 from quintet.components.sph_fluid.plan import particles
 
@@ -21,7 +21,7 @@ def params(**given):
 @pytest.mark.parametrize("wall_offset", [0.5, 1.5, 2.5])
 def test_wall_particles_are_as_far_out_as_asked(wall_offset):
     one = params(boundary__wall_offset=wall_offset)
-    wall = build.wall_points(one)
+    wall = wall_points(one)
     assert wall.min(axis=0) == pytest.approx([-0.1 * wall_offset] * 3)
     assert wall[:, 0].max() == pytest.approx(1.0 + 0.1 * wall_offset)
     assert particles(one) == len(wall) + 5 * 5 * 3
