@@ -17,9 +17,10 @@ class Motion:
     """How something moves: displaced along x, y and z, and turned about an axis through a point.
 
     Either `file` or `times` give a table, through which a cubic spline goes; its velocity and
-    acceleration are continuous, and its slopes at the ends are those of parabolas through three
-    rows. Or `period` gives a harmonic motion, the amplitudes times sin(2πt/period); within `ramp`
-    it grows from nothing by 10τ³ - 15τ⁴ + 6τ⁵, τ = t/ramp. What is displaced is turned first.
+    acceleration are continuous. Its slopes at the ends are those of parabolas through three rows,
+    and 0 where the first two or the last two rows are equal. Or `period` gives a harmonic motion,
+    the amplitudes times sin(2πt/period); within `ramp` it grows from nothing by 10τ³ - 15τ⁴ + 6τ⁵,
+    τ = t/ramp. What is displaced is turned first.
 
     Parameters
     ----------
@@ -90,6 +91,16 @@ class Motion:
                 "motion.amplitude, angle_amplitude and ramp belong to period; found them with "
                 f"{source}. Remove them."
             )
+        if source == "times" and not tabled:
+            raise ValueError(
+                "motion.times needs displacement or angle, with a row for each time; found "
+                "neither. Add one, or remove motion."
+            )
+        if source == "period" and not (any(self.amplitude) or self.angle_amplitude):
+            raise ValueError(
+                "motion.period needs an amplitude or an angle_amplitude other than 0; found "
+                "neither. Add one, or remove motion."
+            )
 
     def _check_table(self) -> None:
         """Rows of a table follow each other, and are of one length."""
@@ -149,10 +160,8 @@ class Motion:
         return x, y, z
 
     def least(self, axis: int, sign: float) -> float:
-        """Displacement [m] along an axis that is least by its sign, of the rows of a table."""
-        if self.period is not None:
-            return -sign * abs(self.amplitude[axis])
-        return sign * float((sign * self._table()[1][:, axis]).min())
+        """Displacement [m] along an axis that is least by its sign, over the whole motion."""
+        return sign * float((sign * self.trajectory.course()[:, axis]).min())
 
     @property
     def direction(self) -> Array:

@@ -7,7 +7,7 @@ from quintet.components.sph_fluid.setup.geometry import ROUNDING
 from quintet.components.sph_fluid.setup.motion_checks import is_along
 from quintet.components.sph_fluid.setup.pistons import Piston
 
-BACK = 1e-9  # of a spacing: how far out of the tank a face may go
+BACK = 0.01  # of a spacing: how far out of the tank a face may go
 
 
 def check_pistons(boundary: Boundary, dimensions: int, spacing: float) -> None:

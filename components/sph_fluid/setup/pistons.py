@@ -7,7 +7,7 @@ from quintet.components.sph_fluid.setup.geometry import FACES
 from quintet.components.sph_fluid.setup.motion import Motion
 from quintet.interfaces.params import parameters
 
-PART = re.compile(r"(?:(walls)\.([xyz][-+]))|(?:(obstacles|meshes)\.(\d{1,6}))")
+PART = re.compile(r"(?:(walls)\.([xyz][-+]))|(?:(obstacles|meshes)\.(0|[1-9]\d{0,5}))")
 Kind = Literal["walls", "obstacles", "meshes"]
 
 

@@ -12,6 +12,7 @@ import numpy as np
 from quintet.interfaces.component import Array
 
 ROUNDING = 1e-9  # of the end: what sums of steps may lie beyond it
+SHARES = 8  # parts that each interval of a course is cut into
 
 
 class Instant(NamedTuple):
@@ -29,6 +30,9 @@ class Trajectory(Protocol):
 
     def at(self, time: float) -> Instant:
         """Place, velocity and acceleration at a time [s] from 0 to `end`."""
+
+    def course(self) -> Array:
+        """Places (n, 4) from time 0 to `end`, with the extremes along each axis."""
 
 
 class Harmonic:
@@ -59,13 +63,17 @@ class Harmonic:
             a * (ddr * s + 2.0 * dr * omega * c - r * omega * omega * s),
         )
 
+    def course(self) -> Array:
+        """Places (n, 4) of a whole swing: a straight line."""
+        return np.linspace(-1.0, 1.0, 8 * SHARES + 1)[:, np.newaxis] * self.amplitude
+
 
 class Spline:
     """The cubic spline through places (n, 4) at times (n,) s, n ≥ 2.
 
     At both ends it has the slope of the parabola through the three nearest rows, of two rows that
-    of the line. Inside, first and second derivatives are continuous (de Boor, A Practical Guide to
-    Splines (1978), ch. IV).
+    of the line; where the two outermost rows are equal it rests at that end. Inside, first and
+    second derivatives are continuous (de Boor, A Practical Guide to Splines (1978), ch. IV).
     """
 
     def __init__(self, times: Array, places: Array) -> None:
@@ -88,6 +96,28 @@ class Spline:
             2.0 * b + 6.0 * x * c,
         )
 
+    def course(self) -> Array:
+        """Places (n, 4) in all intervals from time 0 on, and where each cubic turns back."""
+        steps = np.diff(self.times)[:, np.newaxis]  # (n - 1, 1) s
+        begin = np.clip(-self.times[:-1, np.newaxis], 0.0, steps)  # time 0, in its interval
+        secants, slopes = np.diff(self.places, axis=0) / steps, self.slopes
+        b = (3.0 * secants - 2.0 * slopes[:-1] - slopes[1:]) / steps
+        c = (slopes[:-1] + slopes[1:] - 2.0 * secants) / (steps * steps)
+        # Roots of the derivative, slope + 2 b x + 3 c x², without cancellation.
+        with np.errstate(divide="ignore", invalid="ignore"):
+            q = -(b + np.copysign(np.sqrt(b * b - 3.0 * c * slopes[:-1]), b))
+            roots = [q / (3.0 * c), slopes[:-1] / q]
+        shares = [begin + share * (steps - begin) for share in np.linspace(0.0, 1.0, SHARES + 1)]
+        columns = [np.broadcast_to(x, b.shape) for x in shares]
+        for root in roots:
+            columns += [
+                np.where((root > begin) & (root < steps), root, begin)[:, [k]] + 0.0 * b
+                for k in range(b.shape[1])
+            ]
+        x = np.stack(columns)  # (k, n - 1, 4) s, the same time for all axes
+        places = self.places[:-1] + x * (slopes[:-1] + x * (b + x * c))
+        return np.asarray(places[:, begin[:, 0] < steps[:, 0]].reshape(-1, b.shape[1]))
+
 
 def _slopes(times: Array, places: Array) -> Array:
     """First derivatives (n, k) of the spline at its rows, by the tridiagonal equations for them."""
@@ -100,6 +130,9 @@ def _slopes(times: Array, places: Array) -> Array:
         return slopes
     slopes[0] = _end_slope(steps[0], steps[1], secants[0], secants[1])
     slopes[-1] = _end_slope(steps[-1], steps[-2], secants[-1], secants[-2])
+    for end in (0, -1):
+        if not secants[end].any():  # two equal rows: at rest
+            slopes[end] = 0.0
     factor = np.zeros(count)  # Thomas's algorithm, downwards and back
     for k in range(1, count - 1):
         before, after = steps[k - 1], steps[k]

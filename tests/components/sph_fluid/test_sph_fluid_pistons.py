@@ -193,6 +193,7 @@ def test_what_stands_and_what_moves_is_all_there_is():
 
 
 OUT = {"times": [0.0, 1.0], "displacement": [[0.0, 0.0, 0.0], [-0.1, 0.0, 0.0]]}
+LATE = {"times": [0.0, 1.0, 1.2], "displacement": [[0, 0, 0], [0, 0, 0], [0.1, 0, 0]]}
 UP = {"times": [0.0, 1.0], "displacement": [[0.0, 0.0, 0.0], [0.0, 0.0, 0.1]]}
 TURN = {"period": 1.0, "angle_amplitude": 0.1, "axis": [1.0, 0.0, 0.0]}
 DEEP = {"dimensions": 3}
@@ -202,11 +203,13 @@ DEEP = {"dimensions": 3}
     ("part", "motion", "more", "match"),
     [
         ("wall.x-", PUSH, {}, "part must be one of walls.x-, walls.x"),
+        ("obstacles.00", PUSH, {}, "with a number N from 0 on; found obstacles.00"),
         ("obstacles.one", PUSH, {}, "with a number N from 0 on; found obstacles.one"),
         ("walls.z+", PUSH, {}, r"must be a closed face of the tank, x-, x\+, z-; found walls\.z"),
         ("obstacles.3", PUSH, {}, "one of the 1 obstacles, numbered from 0 on; found obstacles.3"),
         ("meshes.0", PUSH, {}, "one of the 0 meshes"),
         ("walls.x-", OUT, {}, r"must move into the tank.*found displacements of -0.1 m along x"),
+        ("walls.x-", LATE, {}, r"found displacements of -0\.0\d+ m along x"),
         ("walls.x-", {"period": 1.0, "amplitude": [0.1, 0, 0]}, {}, "must move into the tank"),
         ("walls.x-", UP, {}, "must move along x alone"),
         ("walls.x-", PUSH, {"boundary.wall_velocity": {"x-": [0, 0, 1.0]}}, "wall_velocity too"),

@@ -59,6 +59,32 @@ def test_two_rows_make_a_line():
     assert spline.at(0.5).second == pytest.approx(NONE)
 
 
+def test_two_equal_rows_at_an_end_mean_rest_there():
+    times = np.array([0.0, 1.0, 1.2, 1.5])
+    spline = Spline(times, columns(times, lambda t: np.array([0.0, 0.0, 0.1, 0.1])))
+    assert spline.at(0.0).rate == pytest.approx(NONE)
+    assert spline.at(1.5).rate == pytest.approx(NONE)
+
+
+@pytest.mark.parametrize("begin", [0.0, -0.7])
+def test_a_course_holds_the_extremes_of_a_spline_between_its_rows(begin):
+    random = np.random.default_rng(7)
+    times = np.cumsum(random.uniform(0.1, 1.0, 9))
+    times += begin - times[0]
+    spline = Spline(times, random.normal(size=(9, 4)))
+    fine = np.array([spline.at(time).place for time in np.linspace(0.0, spline.end, 20001)])
+    course = spline.course()
+    assert course.min(axis=0) == pytest.approx(fine.min(axis=0), abs=1e-6)
+    assert course.max(axis=0) == pytest.approx(fine.max(axis=0), abs=1e-6)
+    assert (course.min(axis=0) <= fine.min(axis=0) + 1e-12).all()
+
+
+def test_a_course_of_a_harmonic_motion_reaches_its_amplitudes():
+    course = Harmonic(np.array([0.1, 0.0, -0.2, 0.3]), 0.9, 0.5).course()
+    assert course.max(axis=0) == pytest.approx([0.1, 0.0, 0.2, 0.3])
+    assert course.min(axis=0) == pytest.approx([-0.1, 0.0, -0.2, -0.3])
+
+
 @pytest.mark.parametrize("ramp", [0.0, 0.7])
 def test_rates_of_a_harmonic_motion_are_those_of_its_place(ramp):
     motion, little = Harmonic(np.array([0.1, 0.0, -0.2, 0.3]), 0.9, ramp), 1e-5
@@ -134,6 +160,8 @@ def moved(motion, **more):
         ({"period": 1.0, "angle": [1.0]}, "motion.angle belongs to times"),
         (TIMES | {"displacement": SWAY, "ramp": 1.0}, "amplitude, angle_amplitude and ramp belong"),
         (TIMES | {"displacement": SWAY[:2]}, "a row for each of the 3 times; found 2"),
+        (TIMES, "motion.times needs displacement or angle"),
+        ({"period": 1.0}, "motion.period needs an amplitude or an angle_amplitude"),
         ({"times": [0.0], "displacement": SWAY[:1]}, "must be 2 or more, increase"),
         ({"times": [0.0, 0.0], "displacement": SWAY[:2]}, "increase, and begin at 0 s"),
         ({"times": [0.5, 1.0], "displacement": SWAY[:2]}, "begin at 0 s or before"),
