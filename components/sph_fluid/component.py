@@ -212,6 +212,7 @@ class SphFluid(Component):
     def load(self, state: Fields) -> None:
         """Come back to a saved state, of this run or of another that it begins from."""
         most = math.inf if self.items_vary else self.born
+        diagnostics.refuse_other_samples(state, len(self.samples.volume))
         diagnostics.refuse_other_particles(state, most, self.all_ranks.boundary(self.state))
         self.state, self.samples.placed = State.load(state), bool(state["placed"])
         self.all_ranks.load(self.state)
@@ -225,9 +226,9 @@ class SphFluid(Component):
 
     def begin_from(self, state: Fields) -> None:
         """Begin from the state of another run; the tank's motion begins with this one."""
-        super().begin_from(state)
-        self.frame.restart()
-        self.pistons.restart()
+        clocks = {*self.frame.save(), *self.pistons.save()}
+        super().begin_from({key: rows for key, rows in state.items() if key not in clocks})
+        self.pistons.refuse_jump(state)
 
     def totals(self) -> Totals:
         """Mass, momentum and energies of the fluid that is left, in the frame of its tank."""

@@ -144,6 +144,17 @@ def refuse_other_particles(saved: Fields, fluid: float, boundary: int) -> None:
         )
 
 
+def refuse_other_samples(saved: Fields, samples: int) -> None:
+    """Refuse a state with another number of samples of bodies and pistons."""
+    count = int((saved["sample"] >= 0).sum())
+    if count != samples:
+        raise SceneError(
+            f"the state that it begins from must have its {samples} samples of bodies and pistons; "
+            f"found {count}. Have the same bodies and boundary.pistons in both scenes; a piston "
+            "that stands still in the first run has a table with displacements of 0."
+        )
+
+
 def refuse_dense(state: State, params: SphFluidParams, ranks: Ranks) -> None:
     """Raise where the fluid was struck faster than a weakly compressible one can be.
 

@@ -34,8 +34,8 @@ class Pistons(Protocol):
     def load(self, state: Fields) -> None:
         """Come back to a saved state."""
 
-    def restart(self) -> None:
-        """Set the clock and the work back to 0."""
+    def refuse_jump(self, saved: Fields) -> None:
+        """Refuse the state of another run in which they stand elsewhere than at their start."""
 
 
 class NoPistons:
@@ -68,5 +68,5 @@ class NoPistons:
     def load(self, state: Fields) -> None:
         """Nothing to do: nothing is remembered."""
 
-    def restart(self) -> None:
-        """Nothing to do: there is no clock."""
+    def refuse_jump(self, saved: Fields) -> None:
+        """Nothing to do: there are none."""

@@ -23,9 +23,10 @@ from quintet.components.sph_fluid.ranks.method import Ranks
 from quintet.components.sph_fluid.setup.trajectory import ROUNDING, Trajectory
 from quintet.components.sph_fluid.state import Array, State
 from quintet.interfaces.component import Fields
-from quintet.interfaces.errors import StepError
+from quintet.interfaces.errors import SceneError, StepError
 
 SAVED = "pistons"  # key of a saved state: time [s] and work [J]
+JUMP = 0.02  # spacings: how far pistons may be from where a state has them
 
 
 class Part:
@@ -141,6 +142,30 @@ class MovingPistons:
         """Come back to a saved state."""
         self.time, self.work = np.asarray(state.get(SAVED, np.zeros(2))).tolist()
 
-    def restart(self) -> None:
-        """Set the clock and the work back to 0."""
-        self.time, self.work = 0.0, 0.0
+    def refuse_jump(self, saved: Fields) -> None:
+        """Refuse the state of another run in which pistons stand elsewhere than at their start.
+
+        Raises
+        ------
+        SceneError
+            With the first piston that would jump through the fluid.
+        """
+        is_piston = saved["sample"] >= self.links
+        rows = len(saved["identity"]) + np.flatnonzero(is_piston)
+        velocity = saved["velocity_pressure"][rows, :3]
+        # A state has samples where they were in the middle of its last step.
+        at_end = saved["position_density"][rows, :3] + 0.5 * saved["last_dt"] * velocity
+        places = np.empty_like(at_end)
+        places[saved["sample"][is_piston] - self.links] = at_end
+        distance = np.linalg.norm(places - self._places(0.0), axis=1)
+        first = 0
+        for number, part in enumerate(self.parts):
+            jump = float(distance[first : first + len(part.points)].max(initial=0.0))
+            first += len(part.points)
+            if jump > JUMP * self.params.spacing:
+                raise SceneError(
+                    f"boundary.pistons[{number}] must stand at its start where the state that it "
+                    f"begins from has it, within {JUMP:g} spacings; found {jump:.3g} m between "
+                    "the two. Begin from a state in which it is back at its start, as "
+                    "output.states can keep one, or let it stand still in the first run."
+                )

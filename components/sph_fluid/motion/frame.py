@@ -42,9 +42,6 @@ class Frame(Protocol):
     def load(self, state: Fields) -> None:
         """Come back to a saved state."""
 
-    def restart(self) -> None:
-        """Set the clock and the work back to 0."""
-
     def refuse_bodies(self) -> None:
         """Refuse surfaces of partners where they are in another frame."""
 
@@ -85,9 +82,6 @@ class StillFrame:
 
     def load(self, state: Fields) -> None:
         """Nothing to do: nothing is remembered."""
-
-    def restart(self) -> None:
-        """Nothing to do: it has no clock."""
 
     def refuse_bodies(self) -> None:
         """Nothing to refuse."""

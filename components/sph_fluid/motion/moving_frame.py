@@ -116,11 +116,6 @@ class MovingFrame:
         self.time, self.work = state.get(SAVED, np.zeros(2)).tolist()
         self.look(0.0)
 
-    def restart(self) -> None:
-        """Set the clock and the work back to 0."""
-        self.time, self.work = 0.0, 0.0
-        self.look(0.0)
-
     def refuse_bodies(self) -> None:
         """Refuse surfaces of partners: these move in the frame of the world."""
         raise SceneError(

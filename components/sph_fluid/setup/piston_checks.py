@@ -1,12 +1,17 @@
 """What pistons must suit; each mistake is one sentence."""
 
+import itertools
+import math
+
 import numpy as np
 
 from quintet.components.sph_fluid.setup.boundary import Boundary
 from quintet.components.sph_fluid.setup.geometry import ROUNDING
 from quintet.components.sph_fluid.setup.motion_checks import is_along
 from quintet.components.sph_fluid.setup.pistons import Piston
+from quintet.interfaces.component import Array
 
+START = 0.02  # spacings: how far a part may be at the start from where the scene has it
 BACK = 0.01  # of a spacing: how far out of the tank a face may go
 
 
@@ -20,6 +25,7 @@ def check_pistons(boundary: Boundary, dimensions: int, spacing: float) -> None:
                 f"{where} must move a part of its own; found {piston.part} twice. Remove one."
             )
         _check_part(where, piston, boundary, dimensions)
+        _check_start(where, piston, boundary, spacing)
         if dimensions == 2 and not is_along(piston.motion, "y"):
             raise ValueError(
                 f"{where}.motion must stay in the plane of x and z in two dimensions: displaced by "
@@ -61,6 +67,31 @@ def _check_part(where: str, piston: Piston, boundary: Boundary, dimensions: int)
                 f"{where}.part must be one of the {count} {kind}, numbered from 0 on; found "
                 f"{piston.part}. Correct its number."
             )
+
+
+def _check_start(where: str, piston: Piston, boundary: Boundary, spacing: float) -> None:
+    """A motion begins where the part stands in the scene, outside of the fluid."""
+    place = piston.motion.trajectory.at(0.0).place
+    shift, angle = math.hypot(*place[:3].tolist()), float(place[3])
+    arms = [math.dist(corner, piston.motion.point) for corner in _corners(piston, boundary)]
+    if shift + abs(angle) * max(arms, default=0.0) > START * spacing:
+        raise ValueError(
+            f"{where}.motion must begin at no displacement and no angle, where {piston.part} "
+            f"stands in the scene; found {shift:.3g} m and {angle:.3g} rad at 0 s. Move the part "
+            "in the scene, and subtract the first place from the motion."
+        )
+
+
+def _corners(piston: Piston, boundary: Boundary) -> Array:
+    """Corners (n, 3) m of an obstacle or a mesh; none of a face, which does not turn."""
+    if (box := piston.number("obstacles")) >= 0:
+        return np.array(list(itertools.product(*zip(*boundary.solids[box], strict=True))))
+    if (mesh := piston.number("meshes")) >= 0:
+        # Left out of scenes without boundaries from files.
+        from quintet.components.sph_fluid.setup.mesh_surfaces import placed
+
+        return placed(boundary.meshes[mesh]).corner.reshape(-1, 3)
+    return np.zeros((0, 3))
 
 
 def _check_face(where: str, piston: Piston, boundary: Boundary, spacing: float) -> None:

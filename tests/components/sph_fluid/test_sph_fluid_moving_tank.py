@@ -164,6 +164,17 @@ def test_water_that_settled_in_a_tank_at_rest_can_begin_to_move():
     assert moving.save()["motion"][0] == 2e-4
 
 
+def test_a_state_later_than_the_end_of_a_new_table_is_a_start():
+    first = fluid_in(MOTIONS["roll"], **POOL)
+    for _ in range(20):
+        first.step(2e-4)
+    rest = [[0.0, 0.0, 0.0], [0.0, 0.0, 0.0]]
+    second = fluid_in({"times": [0.0, 1e-3], "displacement": rest}, **POOL)
+    second.begin_from(first.save())
+    second.step(2e-4)
+    assert second.save()["motion"].tolist() == [2e-4, 0.0]
+
+
 def test_a_step_beyond_the_table_is_refused():
     fluid = fluid_in({"times": [0.0, 1e-3], "displacement": [[0, 0, 0], [0, 0, 1e-6]]}, **POOL)
     for _ in range(5):

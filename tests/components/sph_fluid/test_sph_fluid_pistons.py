@@ -9,7 +9,7 @@ from quintet.components.sph_fluid.boundary.parts import moving, standing
 from quintet.components.sph_fluid.component import SphFluid
 from quintet.components.sph_fluid.plan import particles
 from quintet.interfaces.component import outputs_of
-from quintet.interfaces.errors import OrderError, StepError
+from quintet.interfaces.errors import OrderError, SceneError, StepError
 
 SPACING = 0.02
 TANK = ((-0.1, 0.0, 0.0), (0.4, 1.0, 0.4))
@@ -175,6 +175,32 @@ def test_a_saved_state_goes_on_with_the_same_bits(scheme):
     assert first.totals().work != 0.0
 
 
+def test_a_state_of_a_piston_on_its_way_is_no_start():
+    first, second = (fluid_with(OBSTACLE, piston("obstacles.0", PUSH)) for _ in range(2))
+    for _ in range(250):
+        first.step(5e-4)
+    there = first.params.boundary.pistons[0].motion.trajectory.at(250 * 5e-4).place[0]
+    with pytest.raises(SceneError, match=f"within 0.02 spacings; found {there:.3g} m between"):
+        second.begin_from(first.save())
+
+
+def test_water_that_settled_before_a_piston_at_rest_can_be_pushed():
+    first = fluid_with(OBSTACLE, piston("obstacles.0", STAY))
+    second = fluid_with(OBSTACLE, piston("obstacles.0", PUSH))
+    first.step(5e-4)
+    second.begin_from(first.save())
+    second.step(5e-4)
+    assert second.save()["pistons"][0] == 5e-4
+
+
+def test_a_state_without_the_piston_is_refused():
+    saved = fluid_with(OBSTACLE).save()
+    pushed = fluid_with(OBSTACLE, piston("obstacles.0", PUSH))
+    count = len(pushed.samples.volume)
+    with pytest.raises(SceneError, match=f"its {count} samples of bodies and pistons; found 0"):
+        pushed.begin_from(saved)
+
+
 def test_a_step_beyond_the_table_is_refused():
     short = {"times": [0.0, 1e-3], "displacement": [[0, 0, 0], [1e-6, 0, 0]]}
     fluid = fluid_with(OBSTACLE, piston("obstacles.0", short))
@@ -193,6 +219,8 @@ def test_what_stands_and_what_moves_is_all_there_is():
 
 
 OUT = {"times": [0.0, 1.0], "displacement": [[0.0, 0.0, 0.0], [-0.1, 0.0, 0.0]]}
+AHEAD = {"times": [0.0, 1.0], "displacement": [[0.08, 0.0, 0.0], [0.0, 0.0, 0.0]]}
+LEANING = {"times": [0.0, 1.0], "angle": [0.2, 0.0], "axis": [0.0, 1.0, 0.0]}
 LATE = {"times": [0.0, 1.0, 1.2], "displacement": [[0, 0, 0], [0, 0, 0], [0.1, 0, 0]]}
 UP = {"times": [0.0, 1.0], "displacement": [[0.0, 0.0, 0.0], [0.0, 0.0, 0.1]]}
 TURN = {"period": 1.0, "angle_amplitude": 0.1, "axis": [1.0, 0.0, 0.0]}
@@ -209,6 +237,8 @@ DEEP = {"dimensions": 3}
         ("obstacles.3", PUSH, {}, "one of the 1 obstacles, numbered from 0 on; found obstacles.3"),
         ("meshes.0", PUSH, {}, "one of the 0 meshes"),
         ("walls.x-", OUT, {}, r"must move into the tank.*found displacements of -0.1 m along x"),
+        ("obstacles.0", AHEAD, {}, r"must begin at no displacement.*found 0.08 m and 0 rad"),
+        ("obstacles.0", LEANING, {}, r"must begin at no displacement.*found 0 m and 0.2 rad"),
         ("walls.x-", LATE, {}, r"found displacements of -0\.0\d+ m along x"),
         ("walls.x-", {"period": 1.0, "amplitude": [0.1, 0, 0]}, {}, "must move into the tank"),
         ("walls.x-", UP, {}, "must move along x alone"),
