@@ -285,7 +285,7 @@ class SphFluidParams:
         # Left out of scenes without boundaries from files.
         from quintet.components.sph_fluid.setup.mesh_checks import mesh_notes
 
-        return mesh_notes(self.boundary.meshes, self.mesh_filling)
+        return mesh_notes(self.boundary, self.mesh_filling)
 
     @property
     def particle_volume(self) -> float:

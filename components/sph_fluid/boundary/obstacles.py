@@ -79,8 +79,9 @@ def from_meshes(
     # Left out of scenes without boundaries from files.
     from quintet.components.sph_fluid.setup.mesh_points import mesh_points
 
+    moved = params.boundary.moved_meshes
     filling = params.mesh_filling
-    pairs = [mesh_points(mesh, filling) for mesh in meshes]
+    pairs = [mesh_points(mesh, filling.of_moved if mesh in moved else filling) for mesh in meshes]
     points, images = (np.concatenate(arrays) for arrays in zip(*pairs, strict=True))
     return points, images
 
@@ -117,12 +118,18 @@ def _rows(
 
 
 def _wet(box: Bounds, params: SphFluidParams) -> NDArray[np.bool_]:
-    """Which faces do not lie on a wall of the tank: lower ones, upper ones; (2, 3)."""
+    """Which faces do not lie on a wall of the tank, or beyond it; lower ones, upper ones; (2, 3).
+
+    Those of a piston beyond a wall are wet, too.
+    """
     if params.boundary.tank is None:
         return _in_space(np.ones((2, 3), bool), params)
     tolerance = ROUNDING * params.spacing
     lower = np.array(box[0]) > np.array(params.boundary.tank[0]) + tolerance
     upper = np.array(box[1]) < np.array(params.boundary.tank[1]) - tolerance
+    if box in params.boundary.moved_solids:  # what is beyond a wall now may come into the tank
+        lower |= np.array(box[0]) < np.array(params.boundary.tank[0]) - tolerance
+        upper |= np.array(box[1]) > np.array(params.boundary.tank[1]) + tolerance
     return _in_space(np.stack([lower, upper]) | _named(params.boundary.open_faces), params)
 
 

@@ -107,6 +107,18 @@ class Boundary:
         """Lowest and highest corners [m] of the obstacles."""
         return tuple(box.bounds for box in self.obstacles)
 
+    @property
+    def moved_solids(self) -> tuple[Bounds, ...]:
+        """Lowest and highest corners [m] of the obstacles that are pistons."""
+        numbers = [piston.number("obstacles") for piston in self.pistons]
+        return tuple(self.solids[number] for number in numbers if number >= 0)
+
+    @property
+    def moved_meshes(self) -> tuple[BoundaryMesh, ...]:
+        """Meshes that are pistons."""
+        numbers = [piston.number("meshes") for piston in self.pistons]
+        return tuple(self.meshes[number] for number in numbers if number >= 0)
+
     def closed_faces(self, dimensions: int) -> tuple[Face, ...]:
         """Faces at which the tank has wall particles."""
         without = {*self.open_faces, *self.symmetry, *(("y-", "y+") if dimensions == 2 else ())}

@@ -20,6 +20,11 @@ class Filling(NamedTuple):
     tank: Bounds | None = None  # m
     around: Bounds | None = None  # m, the tank with its wall particles
 
+    @property
+    def of_moved(self) -> "Filling":
+        """Filling of a mesh that moves: also of what is in the tank's walls at the start."""
+        return self._replace(dry=(), tank=None, around=None)
+
 
 @parameters
 class BoundaryMesh(MeshKeys):

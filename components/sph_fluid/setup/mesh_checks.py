@@ -8,7 +8,7 @@ import numpy as np
 from quintet.components.shared.geometry.bounds import Bounds
 from quintet.components.shared.geometry.lattice import fill_box
 from quintet.components.sph_fluid.setup.boundary import Boundary
-from quintet.components.sph_fluid.setup.boundary_meshes import BoundaryMesh, Filling
+from quintet.components.sph_fluid.setup.boundary_meshes import Filling
 from quintet.components.sph_fluid.setup.geometry import cells
 from quintet.components.sph_fluid.setup.mesh_points import mesh_points, surface
 from quintet.components.sph_fluid.setup.mesh_surfaces import FAR, Surface
@@ -46,9 +46,10 @@ def check_meshes(
     for number, mesh in enumerate(boundary.meshes):
         name = f"boundary.meshes[{number}]"
         try:
-            behind = surface(mesh, filling)
+            layers = filling.of_moved if mesh in boundary.moved_meshes else filling
+            behind = surface(mesh, layers)
             _check_thickness(name, behind)
-            points, _ = mesh_points(mesh, filling)
+            points, _ = mesh_points(mesh, layers)
         except ValueError as error:
             text = str(error)
             raise ValueError(text if text.startswith(name) else f"{name}: {text}") from error
@@ -150,13 +151,14 @@ def _check_apart(name: str, points: Array, other: str, earlier: Array, spacing: 
         )
 
 
-def mesh_notes(meshes: Iterable[BoundaryMesh], filling: Filling) -> tuple[str, ...]:
+def mesh_notes(boundary: Boundary, filling: Filling) -> tuple[str, ...]:
     """Sizes of surfaces, their particles, and the rims of open ones."""
     notes = []
-    for number, mesh in enumerate(meshes):
-        whole = surface(mesh, filling).whole
+    for number, mesh in enumerate(boundary.meshes):
+        layers = filling.of_moved if mesh in boundary.moved_meshes else filling
+        whole = surface(mesh, layers).whole
         x, y, z = np.ptp(whole.corner, axis=(0, 1)).tolist()
-        points, _ = mesh_points(mesh, filling)
+        points, _ = mesh_points(mesh, layers)
         text = (
             f"boundary.meshes[{number}], {Path(mesh.path).name}: {len(whole.corner)} triangles, "
             f"{x:.4g} x {y:.4g} x {z:.4g} m, {len(points)} wall particles"

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import trimesh
 from fluid_params import fluid_params
 from pydantic import ValidationError
 
@@ -254,6 +255,35 @@ DEEP = {"dimensions": 3}
 def test_a_piston_that_cannot_move_so_is_refused(part, motion, more, match):
     with pytest.raises(ValidationError, match=match):
         fluid_params(**BASE | OBSTACLE | piston(part, motion) | more)
+
+
+THROUGH = ((0.1, 0.2, -0.08), (0.3, 0.4, 0.2))  # through the floor
+
+
+def through_the_floor(folder, form):
+    """A block that stands 0.08 m deep in the floor, from the scene or from a file."""
+    settings = BASE | DEEP | {"fluid": [((0.32, 0.0, 0.0), (0.4, 0.4, 0.2))]}
+    settings |= {"boundary.walls": ((0.0, 0.0, 0.0), (0.4, 0.6, 0.4))}
+    if form == "obstacles":
+        return settings | {"boundary.obstacles": [THROUGH]}
+    file = str(folder / "block.obj")
+    trimesh.creation.box(bounds=THROUGH).export(file)
+    return settings | {"boundary.meshes": [{"file": file}]}
+
+
+@pytest.mark.parametrize("form", ["obstacles", "meshes"])
+def test_a_part_that_rises_out_of_a_wall_has_particles_all_around(tmp_path, form):
+    settings = through_the_floor(tmp_path, form) | piston(f"{form}.0", UP)
+    params = fluid_params(**settings)
+    points, images = moving(params, params.boundary.pistons[0])
+    low, high = np.array(THROUGH)
+    outermost = [points.min(axis=0) - low, high - points.max(axis=0)]
+    assert outermost == pytest.approx(np.full((2, 3), 0.5 * SPACING), abs=1e-6)
+    middle = np.abs(points[:, :2] - 0.5 * (low + high)[:2]).max(axis=1) < SPACING
+    under = middle & (points[:, 2] < low[2] + SPACING)
+    assert under.sum() == 4
+    assert images[under, 2] == pytest.approx(low[2] - 0.5 * SPACING, abs=1e-6)
+    assert particles(params) == SphFluid(params).items() + len(points)
 
 
 def test_a_part_that_is_moved_twice_is_refused():
