@@ -133,7 +133,9 @@ def open_boundaries(params: SphFluidParams) -> OpenBoundaries:
 
 def lubrication_films(params: SphFluidParams, samples: Samples, ranks: Ranks) -> Films:
     """Films in narrow gaps: from the start, where they are needed, or never."""
-    if params.boundary.pistons:
+    if (
+        params.boundary.pistons and not (samples.body >= 0.0).any()
+    ):  # numbers of pistons are negative
         return NoFilms()
     if params.boundary.lubrication_films == "auto":
         # Left out of scenes that say whether they want films.

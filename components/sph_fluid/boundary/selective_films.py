@@ -65,6 +65,7 @@ class SelectiveFilms:
         of_all = self.ranks.all_rows(self.samples.number, np.concatenate(columns, axis=1))
         places, spacing = of_all[:, :3], self.params.spacing
         wet = np.bincount(body, of_all[:, 3], len(number)) > 0.0
+        wet &= number >= 0.0  # pistons, whose numbers are negative, have none
         if not wet.any():
             return
         boxes = bounds(places, body, len(number))

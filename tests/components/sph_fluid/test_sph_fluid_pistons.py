@@ -176,6 +176,21 @@ def test_a_saved_state_goes_on_with_the_same_bits(scheme):
     assert first.totals().work != 0.0
 
 
+def test_a_body_on_the_floor_beside_a_piston_has_no_film_and_a_note_says_why():
+    pool = BASE | OBSTACLE | {"fluid": [((0.16, 0.0, 0.0), (0.4, 1.0, 0.2))]}
+    fluid = SphFluid(fluid_params(**pool, **piston("obstacles.0", STAY)))
+    x, z = np.meshgrid([0.11, 0.13, 0.15], [0.01, 0.03, 0.05])
+    places = np.stack([x.ravel(), np.full(9, 0.5), z.ravel()], axis=1)
+    none = np.zeros((9, 3))
+    static = {"normal": none, "volume": np.full(9, SPACING**2), "body": np.zeros(9)}
+    fluid.bind({f"surface.{k}": v for k, v in static.items()}, frozenset({"surface"}))
+    fluid.take({"surface.position": places, "surface.velocity": none, "surface.mirror": places})
+    fluid.step(2e-4)
+    (note,) = [note for note in fluid.notes() if "touches a wall" in note]
+    assert note.startswith("body 0 ")
+    assert "films know no pistons" in note
+
+
 def test_a_state_of_a_piston_on_its_way_is_no_start():
     first, second = (fluid_with(OBSTACLE, piston("obstacles.0", PUSH)) for _ in range(2))
     for _ in range(250):
