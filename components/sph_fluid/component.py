@@ -179,7 +179,7 @@ class SphFluid(Component):
 
     def _compute_rates(self, dt: float, share: float) -> None:
         """Accelerations and rates of density, of the state as it is at a share of the step."""
-        self.frame.look(share * dt)
+        self.frame.set_time(share * dt)
         for part in self.pressure_parts:
             if part.reads_images:
                 self.symmetry.write_images(self.state)

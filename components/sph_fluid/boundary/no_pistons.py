@@ -1,4 +1,4 @@
-"""What a fluid asks of its pistons, and a fluid without any."""
+"""The interface of a fluid to its pistons, and a fluid without any."""
 
 from typing import Protocol
 

@@ -21,8 +21,8 @@ class Frame(Protocol):
     def weight_at(self, points: Array) -> Array:
         """Acceleration (n, 3) m/s2 that fluid at rest at points (n, 3) m is held against."""
 
-    def look(self, later: float) -> None:
-        """Take forces at a time [s] after the begin of the step."""
+    def set_time(self, later: float) -> None:
+        """Set the forces to those at a time [s] after the begin of the step."""
 
     def law(self, law: PairLaw) -> PairLaw:
         """Numbers of the pair law at that time."""
@@ -59,7 +59,7 @@ class StillFrame:
         """Gravity, everywhere."""
         return np.tile(self.gravity, (len(points), 1))
 
-    def look(self, later: float) -> None:
+    def set_time(self, later: float) -> None:
         """Nothing to do: gravity is the same at all times."""
 
     def law(self, law: PairLaw) -> PairLaw:

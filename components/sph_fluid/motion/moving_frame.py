@@ -39,18 +39,17 @@ class MovingFrame:
         self.params, self.ranks, self.trajectory = params, ranks, motion.trajectory
         self.point, self.axis = np.array(motion.point), motion.direction
         self.cross = crossing(self.axis)  # (3, 3) 1
-        self.twice = product(self.cross, self.cross)
+        self.cross_squared = product(self.cross, self.cross)
         self.gravity = np.array(params.gravity)
         boxes = [params.boundary.tank] if params.boundary.tank else params.extents
         lows, highs = zip(*boxes, strict=True)
         self.middle = 0.5 * (np.min(lows, axis=0) + np.max(highs, axis=0))  # (3,) m
         self.mass = constants(params).mass * params.slab_thickness  # kg, of a particle
-        self.is_ahead = (
-            params.integration == "extrapolated"
-        )  # places and velocities are of the step's begin
+        # Rates are then computed of places and velocities at the begin of a step.
+        self.rates_precede_middle = params.integration == "extrapolated"
         self.time, self.work, self.later = 0.0, 0.0, 0.0
         self.power = np.zeros(0)  # (fluid,) m2/s3
-        self.look(0.0)
+        self.set_time(0.0)
 
     def weight_at(self, points: Array) -> Array:
         """Acceleration (n, 3) m/s2 that fluid at rest at points (n, 3) m is held against."""
@@ -59,8 +58,8 @@ class MovingFrame:
         rows = zip(at_rest, self.gradient.tolist(), strict=True)
         return np.stack([a + g[0] * x + g[1] * y + g[2] * z for a, g in rows], axis=1)
 
-    def look(self, later: float) -> None:
-        """Take forces at a time [s] after the begin of the step."""
+    def set_time(self, later: float) -> None:
+        """Set the forces to those at a time [s] after the begin of the step."""
         time, end = self.time + later, self.trajectory.end
         if time > end + ROUNDING * abs(end):
             raise StepError(
@@ -71,7 +70,7 @@ class MovingFrame:
         place, rate, second = self.trajectory.at(time)
         turned = turn_back(self.gravity - second[:3], self.axis, self.cross, float(place[3]))
         omega, alpha = float(rate[3]), float(second[3])
-        self.gradient = -alpha * self.cross - omega * omega * self.twice  # (3, 3) 1/s2
+        self.gradient = -alpha * self.cross - omega * omega * self.cross_squared  # (3, 3) 1/s2
         self.uniform = turned - self.gravity - times(self.gradient, self.point)  # (3,) m/s2
         self.turning = 2.0 * omega * self.axis  # (3,) 1/s
         x, y, z = self.weight_at(self.middle[np.newaxis])[0].tolist()
@@ -91,7 +90,7 @@ class MovingFrame:
         """Add the frame's own accelerations to the rates (n, 4); return the largest [m/s2]."""
         if len(self.power) != state.fluid:
             self.power = np.zeros(state.fluid)
-        lead = self.later if self.is_ahead else 0.0
+        lead = self.later if self.rates_precede_middle else 0.0
         arrays = (state.position_density, state.velocity_pressure, rate, self.power)
         frame = (lead, self.uniform, self.gradient, self.turning)
         squares = team.run(add_frame_acceleration, state.fluid, *frame, *arrays)
@@ -105,7 +104,7 @@ class MovingFrame:
     def advance(self, dt: float) -> None:
         """Go on to the end of a step [s]."""
         self.time += dt
-        self.look(0.0)
+        self.set_time(0.0)
 
     def save(self) -> dict[str, Array]:
         """Copy out its clock, and its work."""
@@ -114,7 +113,7 @@ class MovingFrame:
     def load(self, state: Fields) -> None:
         """Come back to a saved state; one of a tank that stood still is that of the start."""
         self.time, self.work = state.get(SAVED, np.zeros(2)).tolist()
-        self.look(0.0)
+        self.set_time(0.0)
 
     def refuse_bodies(self) -> None:
         """Refuse surfaces of partners: these move in the frame of the world."""
