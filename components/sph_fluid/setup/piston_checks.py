@@ -5,6 +5,7 @@ import math
 
 import numpy as np
 
+from quintet.components.shared.geometry.bounds import Bounds
 from quintet.components.sph_fluid.setup.boundary import Boundary
 from quintet.components.sph_fluid.setup.geometry import ROUNDING
 from quintet.components.sph_fluid.setup.motion_checks import is_along
@@ -40,8 +41,13 @@ def check_pistons(boundary: Boundary, dimensions: int, spacing: float) -> None:
                 )
         if piston.face:
             _check_face(where, piston, boundary, spacing)
+            _check_way(where, piston, boundary, _swept_by_face(piston, boundary), spacing)
         elif (box := piston.number("obstacles")) >= 0:
             _check_dry_faces(where, piston, boundary, box, spacing, dimensions)
+            if not piston.motion.turns:
+                swept = _swept_by_box(piston, boundary.solids[box])
+                _check_way(where, piston, boundary, swept, spacing)
+                _check_inside(where, piston, boundary, swept, dimensions)
     if boundary.method == "potential":
         raise ValueError(
             "boundary.pistons need boundary.method mdbc or dbc; found potential. Set method."
@@ -115,6 +121,68 @@ def _check_face(where: str, piston: Piston, boundary: Boundary, spacing: float) 
             f"{where}: {piston.part} must not have a boundary.wall_velocity too; found both. "
             "Remove one."
         )
+
+
+def _swept_by_face(piston: Piston, boundary: Boundary) -> Array:
+    """Corners (1, 2, 3) m of the box that a face of the tank goes through."""
+    assert boundary.tank is not None
+    swept = np.array([boundary.tank])
+    axis, is_lower = "xyz".index(piston.face[0]), piston.face[1] == "-"
+    furthest = piston.motion.least(axis, -1.0 if is_lower else 1.0)
+    swept[0, int(is_lower), axis] = swept[0, int(not is_lower), axis] + furthest
+    return swept
+
+
+def _swept_by_box(piston: Piston, box: Bounds) -> Array:
+    """Corners (n, 2, 3) m of boxes that an obstacle goes through, one after the other."""
+    course = piston.motion.trajectory.course()[:, :3]
+    low = np.minimum(course[:-1], course[1:]) + np.array(box[0])
+    high = np.maximum(course[:-1], course[1:]) + np.array(box[1])
+    return np.stack([low, high], axis=1)
+
+
+def _check_way(
+    where: str, piston: Piston, boundary: Boundary, swept: Array, spacing: float
+) -> None:
+    """No obstacle that stands is in the way, and a face does not reach the opposite one."""
+    moved = [other.number("obstacles") for other in boundary.pistons]
+    own, little = piston.number("obstacles"), ROUNDING * spacing
+    for number, box in enumerate(boundary.solids):
+        low, high = np.array(box) if number not in moved else np.full((2, 3), np.nan)
+        shared = np.minimum(swept[:, 1], high) - np.maximum(swept[:, 0], low)
+        at_start = np.array(boundary.solids[own]) if own >= 0 else np.full((2, 3), np.nan)
+        overlap = np.minimum(at_start[1], high) - np.maximum(at_start[0], low)
+        if (shared > little).all(axis=1).any() and not (overlap > little).all():
+            raise ValueError(
+                f"{where}: {piston.part} must not go through boundary.obstacles[{number}], which "
+                "stands; found that they overlap on its way. Shorten the motion, or move one of "
+                "the two."
+            )
+    if piston.face and boundary.tank is not None:
+        axis = "xyz".index(piston.face[0])
+        length = boundary.tank[1][axis] - boundary.tank[0][axis]
+        travel = float(swept[0, 1, axis] - swept[0, 0, axis])
+        if travel >= length - little:
+            raise ValueError(
+                f"{where}: {piston.part} must stay before the opposite face, {length:g} m away; "
+                f"found a displacement of {travel:g} m. Shorten the motion."
+            )
+
+
+def _check_inside(
+    where: str, piston: Piston, boundary: Boundary, swept: Array, dimensions: int
+) -> None:
+    """An obstacle does not leave the tank through a closed face."""
+    for face in boundary.closed_faces(dimensions) if boundary.tank else ():
+        assert boundary.tank is not None
+        axis = "xyz".index(face[0])
+        wall = boundary.tank["-+".index(face[1])][axis]
+        outside = swept[:, 1, axis] <= wall if face[1] == "-" else swept[:, 0, axis] >= wall
+        if outside.any():
+            raise ValueError(
+                f"{where}: {piston.part} must stay in the tank; found it beyond the wall {face} "
+                "on its way. Shorten the motion, or open the face."
+            )
 
 
 def _check_dry_faces(

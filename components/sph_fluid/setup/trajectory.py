@@ -32,7 +32,7 @@ class Trajectory(Protocol):
         """Place, velocity and acceleration at a time [s] from 0 to `end`."""
 
     def course(self) -> Array:
-        """Places (n, 4) from time 0 to `end`, with the extremes along each axis."""
+        """Places (n, 4) from time 0 to `end` in order, with the extremes along each axis."""
 
 
 class Harmonic:
@@ -114,9 +114,10 @@ class Spline:
                 np.where((root > begin) & (root < steps), root, begin)[:, [k]] + 0.0 * b
                 for k in range(b.shape[1])
             ]
-        x = np.stack(columns)  # (k, n - 1, 4) s, the same time for all axes
+        x = np.sort(np.stack(columns), axis=0)  # (k, n - 1, 4) s, the same time for all axes
         places = self.places[:-1] + x * (slopes[:-1] + x * (b + x * c))
-        return np.asarray(places[:, begin[:, 0] < steps[:, 0]].reshape(-1, b.shape[1]))
+        in_order = places[:, begin[:, 0] < steps[:, 0]].transpose(1, 0, 2)
+        return np.asarray(in_order.reshape(-1, b.shape[1]))
 
 
 def _slopes(times: Array, places: Array) -> Array:

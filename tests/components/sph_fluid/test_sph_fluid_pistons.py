@@ -237,6 +237,11 @@ def test_what_stands_and_what_moves_is_all_there_is():
 OUT = {"times": [0.0, 1.0], "displacement": [[0.0, 0.0, 0.0], [-0.1, 0.0, 0.0]]}
 AHEAD = {"times": [0.0, 1.0], "displacement": [[0.08, 0.0, 0.0], [0.0, 0.0, 0.0]]}
 LEANING = {"times": [0.0, 1.0], "angle": [0.2, 0.0], "axis": [0.0, 1.0, 0.0]}
+ALONG = {"times": [0.0, 1.0], "displacement": [[0.0, 0.0, 0.0], [0.25, 0.0, 0.0]]}
+FAR = {"times": [0.0, 1.0], "displacement": [[0.0, 0.0, 0.0], [0.6, 0.0, 0.0]]}
+DRY = {"fluid": [((0.06, 0.0, 0.0), (0.2, 1.0, 0.2))]}
+POST = DRY | {"boundary.obstacles": [BLOCK, ((0.26, 0.0, 0.0), (0.3, 1.0, 0.4))]}
+NO_POST = {"boundary.obstacles": []}
 LATE = {"times": [0.0, 1.0, 1.2], "displacement": [[0, 0, 0], [0, 0, 0], [0.1, 0, 0]]}
 UP = {"times": [0.0, 1.0], "displacement": [[0.0, 0.0, 0.0], [0.0, 0.0, 0.1]]}
 TURN = {"period": 1.0, "angle_amplitude": 0.1, "axis": [1.0, 0.0, 0.0]}
@@ -255,6 +260,10 @@ DEEP = {"dimensions": 3}
         ("walls.x-", OUT, {}, r"must move into the tank.*found displacements of -0.1 m along x"),
         ("obstacles.0", AHEAD, {}, r"must begin at no displacement.*found 0.08 m and 0 rad"),
         ("obstacles.0", LEANING, {}, r"must begin at no displacement.*found 0 m and 0.2 rad"),
+        ("obstacles.0", ALONG, POST, r"must not go through boundary.obstacles\[1\], which stands"),
+        ("walls.x-", ALONG, POST, r"must not go through boundary.obstacles\[0\], which stands"),
+        ("walls.x-", FAR, NO_POST, "opposite face, 0.5 m away; found a displacement of 0.6 m"),
+        ("obstacles.0", FAR, {}, r"must stay in the tank; found it beyond the wall x\+ on its way"),
         ("walls.x-", LATE, {}, r"found displacements of -0\.0\d+ m along x"),
         ("walls.x-", {"period": 1.0, "amplitude": [0.1, 0, 0]}, {}, "must move into the tank"),
         ("walls.x-", UP, {}, "must move along x alone"),
@@ -299,6 +308,16 @@ def test_a_part_that_rises_out_of_a_wall_has_particles_all_around(tmp_path, form
     assert under.sum() == 4
     assert images[under, 2] == pytest.approx(low[2] - 0.5 * SPACING, abs=1e-6)
     assert particles(params) == SphFluid(params).items() + len(points)
+
+
+@pytest.mark.parametrize(("part", "count"), [("obstacles.0", 3), ("walls.x-", 6), ("walls.z-", 6)])
+def test_pictures_leave_out_what_moves_and_a_note_says_so(part, count):
+    fluid = SphFluid(fluid_params(**BASE | OBSTACLE | piston(part, STAY)))
+    assert len(fluid.walls()["cells"]) == count  # of three walls and four sides of a block
+    assert any(
+        f"pictures leave out the boundary.pistons, as they move: {part}." in note
+        for note in fluid.notes()
+    )
 
 
 def test_a_part_that_is_moved_twice_is_refused():
