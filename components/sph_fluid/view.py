@@ -22,19 +22,27 @@ def view(state: State) -> Fields:
 
 
 def wall_faces(params: SphFluidParams) -> list[Array]:
-    """Corners (k, 3) m of the tank's closed faces, and of faces of obstacles and of meshes."""
+    """Corners (k, 3) m of the tank's closed faces, and of faces of obstacles and of meshes.
+
+    Pistons, which do not stay there, are left out.
+    """
     boundary = params.boundary
-    faces = box(*boundary.tank, params.closed_faces) if boundary.tank else []
+    moved = {piston.face for piston in boundary.pistons}
+    closed = [face for face in params.closed_faces if face not in moved]
+    faces = box(*boundary.tank, closed) if boundary.tank else []
     sides = [face for face in FACES if params.dimensions == 3 or face[0] != "y"]
-    faces += [face for bounds in boundary.solids for face in box(*bounds, sides)]
+    standing = [bounds for bounds in boundary.solids if bounds not in boundary.moved_solids]
+    faces += [face for bounds in standing for face in box(*bounds, sides)]
     return faces + _faces_of_meshes(params)
 
 
 def _faces_of_meshes(params: SphFluidParams) -> list[Array]:
-    """Triangles (3, 3) m of all surfaces from files."""
-    if not params.boundary.meshes:
+    """Triangles (3, 3) m of the surfaces from files that stand."""
+    moved = params.boundary.moved_meshes
+    standing = [mesh for mesh in params.boundary.meshes if mesh not in moved]
+    if not standing:
         return []
     # Left out of scenes without boundaries from files.
     from quintet.components.sph_fluid.setup.mesh_surfaces import placed
 
-    return [triangle for mesh in params.boundary.meshes for triangle in placed(mesh).corner]
+    return [triangle for mesh in standing for triangle in placed(mesh).corner]
