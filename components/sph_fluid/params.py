@@ -166,7 +166,7 @@ class SphFluidParams:
         if boundary.pistons:
             self._check_pistons()
         self._check_methods()
-        self.gauges.check(boundary, spacing, dimensions)
+        self.gauges.check(boundary, spacing, dimensions, 2.0 * self.smoothing_length)
         if self.shapes:
             # Left out of scenes whose fluid is in boxes.
             from quintet.components.sph_fluid.setup.shape_checks import check_shapes
@@ -182,13 +182,15 @@ class SphFluidParams:
 
     def _check_flow(self) -> None:
         # Left out of scenes whose fluid neither comes nor goes.
-        from quintet.components.sph_fluid.setup.inflow_outflow import check_buffers, check_flow
+        from quintet.components.sph_fluid.setup.flow_checks import check_buffers, check_pressures
+        from quintet.components.sph_fluid.setup.inflow_outflow import check_flow
 
         edge = self.boundary
         check_flow(edge.inflow, edge.outflow, edge.tank, edge.open_faces, self.dimensions)
         assert edge.tank is not None
-        faces = [each.face for each in edge.inflow] + [each.face for each in edge.outflow]
-        check_buffers(faces, edge.tank, edge.solids, self.spacing, self.smoothing)
+        check_buffers(self.passages, edge.tank, edge.solids, self.spacing, self.smoothing)
+        fluid = (self.density, self.sound_speed, self.negative_pressure)
+        check_pressures(edge.outflow, *fluid)
 
     def _check_periodic(self, apart: float) -> None:
         # Left out of scenes whose tank does not repeat.
@@ -229,7 +231,11 @@ class SphFluidParams:
     def _check_meshes(self) -> None:
         """Boundaries from files suit the fluid."""
         # Left out of scenes without them, and of those without other shapes.
-        from quintet.components.sph_fluid.setup.mesh_checks import check_meshes, region_points
+        from quintet.components.sph_fluid.setup.mesh_checks import (
+            check_meshes,
+            mesh_surfaces,
+            region_points,
+        )
 
         if self.staggered:
             raise ValueError(
@@ -237,8 +243,14 @@ class SphFluidParams:
                 "surfaces; found both. Remove one of them."
             )
         places = region_points(self.fluid, self.spacing)
-        gauges = self.gauges.pressure_gauges
+        gauges = self.gauges.fluid_points
         check_meshes(self.boundary, self.mesh_filling, self.dimensions, places, gauges)
+        if self.passages and self.boundary.tank:
+            # Left out of scenes whose fluid neither comes nor goes.
+            from quintet.components.sph_fluid.setup.flow_checks import check_meshes_in_buffers
+
+            tank, surfaces = self.boundary.tank, mesh_surfaces(self.boundary, self.mesh_filling)
+            check_meshes_in_buffers(self.passages, tank, surfaces, self.smoothing)
 
     @property
     def mesh_filling(self) -> Filling:
@@ -267,6 +279,11 @@ class SphFluidParams:
     def extents(self) -> tuple[Bounds, ...]:
         """Boxes of fluid, and those around its other shapes."""
         return *self.boxes, *(shape.bounds for shape in self.shapes)
+
+    @property
+    def passages(self) -> list[Face]:
+        """Faces through which fluid comes, then those through which it goes."""
+        return [each.face for each in (*self.boundary.inflow, *self.boundary.outflow)]
 
     @property
     def closed_faces(self) -> tuple[Face, ...]:

@@ -47,9 +47,15 @@ class Gauges:
         flow = self.velocity_gauges or self.discharge_gauges
         return bool(places or flow or self.front_gauge or self.motion_gauge or self.mass_gauge)
 
-    def check(self, boundary: Boundary, spacing: float, dimensions: int) -> None:
-        """Refuse gauges beyond a wall of the tank or inside an obstacle."""
+    def check(self, boundary: Boundary, spacing: float, dimensions: int, reach: float) -> None:
+        """Refuse gauges beyond a wall or inside an obstacle, and sections near a face.
+
+        `reach` [m] is the radius of the kernel.
+        """
         tolerance = ROUNDING * spacing
+        for number, section in enumerate(self.discharge_gauges):
+            where = f"gauges.discharge_gauges[{number}]"
+            _require_whole_section(where, section, boundary, reach - tolerance)
         for name, point in self._points():
             require_within_walls(f"gauges.{name}", point, boundary, tolerance, dimensions)
             for number, (lowest, highest) in enumerate(boundary.solids):
@@ -62,6 +68,15 @@ class Gauges:
                         f"gauges.{name} must not be inside boundary.obstacles[{number}]; found "
                         f"{tuple(point)} m. Move the gauge into the fluid."
                     )
+
+    @property
+    def fluid_points(self) -> list[tuple[str, Vector]]:
+        """Names and places [m] of the gauges that must not be inside a solid."""
+        return [
+            (name, (point[0], point[1], point[2]))
+            for name, point in self._points()
+            if len(point) == 3
+        ]
 
     def _points(self) -> Iterator[tuple[str, tuple[float, ...]]]:
         for number, point in enumerate(self.pressure_gauges):
@@ -89,4 +104,26 @@ def require_within_walls(
             raise ValueError(
                 f"{where} must be inside the walls along {'xyz'[axis]}, {low:g} to {high:g} m; "
                 f"found {value:g} m, where there is no fluid. Move the gauge."
+            )
+
+
+def _require_whole_section(where: str, section: float, boundary: Boundary, reach: float) -> None:
+    """Refuse a section x [m] whose neighbourhood, `reach` [m] to both sides, leaves the tank.
+
+    Fluid that falls over an open face is on both sides of it: such a face is no limit.
+    """
+    if boundary.tank is None:
+        return
+    passages = [each.face for each in (*boundary.inflow, *boundary.outflow)]
+    low, high = boundary.tank[0][0], boundary.tank[1][0]
+    is_periodic = "x" in boundary.periodic
+    depth = {"x-": section - low, "x+": high - section}  # m, inside each face
+    for face, inside in depth.items():
+        is_limit = is_periodic or face in passages or face not in boundary.open_faces
+        least = 0.0 if is_periodic else reach
+        if is_limit and inside < least:
+            raise ValueError(
+                f"{where} must be inside the tank, {least:.4g} m or more from its face {face}, or "
+                f"it misses a part of the flow; found x = {section:g} m in a tank from {low:g} to "
+                f"{high:g} m. Move the section."
             )

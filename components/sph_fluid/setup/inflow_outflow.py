@@ -171,28 +171,3 @@ def _places(inflow: Inflow, tank: Bounds) -> Array:
     axes = [a + LOOKED * (b - a) for a, b in zip(low, high, strict=True)]
     axes[axis] = np.array([(high if inflow.face[1] == "+" else low)[axis]])
     return lattice_points(axes)
-
-
-def check_buffers(
-    faces: list[Face], tank: Bounds, solids: tuple[Bounds, ...], spacing: float, smoothing: float
-) -> None:
-    """Refuse tanks in which buffers leave no room for fluid, and obstacles in buffers."""
-    deep = buffer_layers(smoothing) * spacing  # m
-    for axis in range(3):
-        sides = sorted({face[1] for face in faces if face[0] == "xyz"[axis]})
-        low, high = tank[0][axis], tank[1][axis]
-        least = len(sides) * deep + 4.0 * smoothing * spacing
-        if sides and high - low < least:
-            raise ValueError(
-                f"boundary.walls must be {least:.4g} m or longer along {'xyz'[axis]}, for the "
-                f"buffers of inflows and outflows, {deep:.4g} m each, and fluid; found "
-                f"{high - low:g} m. Lengthen the tank, or refine the spacing."
-            )
-        for number, box in enumerate(solids):
-            before = "-" in sides and box[0][axis] < low + deep
-            after = "+" in sides and box[1][axis] > high - deep
-            if before or after:
-                raise ValueError(
-                    f"boundary.obstacles[{number}] must stand outside of the buffers of inflows "
-                    f"and outflows, {deep:.4g} m from their faces; found {box}. Move it."
-                )

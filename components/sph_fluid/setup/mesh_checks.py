@@ -27,7 +27,7 @@ def check_meshes(
     filling: Filling,
     dimensions: int,
     fluid: Iterable[Array],
-    gauges: Sequence[Vector],
+    gauges: Sequence[tuple[str, Vector]],
 ) -> None:
     """Surfaces are sound and thick enough, have no fluid behind them, and overlap nothing.
 
@@ -38,8 +38,8 @@ def check_meshes(
     dimensions
     fluid : arrays (n, 3) m
         Particles of each region of fluid.
-    gauges : (n, 3) m
-        Places of gauges of pressure.
+    gauges : pairs
+        Names and places [m] of gauges of pressure and velocity.
     """
     _check_options(boundary, dimensions)
     regions, filled = list(fluid), list[tuple[str, Array]]()
@@ -60,6 +60,11 @@ def check_meshes(
         for other, earlier in filled:
             _check_apart(name, points, other, earlier, filling.spacing)
         filled.append((name, points))
+
+
+def mesh_surfaces(boundary: Boundary, filling: Filling) -> list[Surface]:
+    """Surfaces from files, in the order of the scene."""
+    return [surface(mesh, filling) for mesh in boundary.meshes]
 
 
 def region_points(fluid: Fluid, spacing: float) -> list[Array]:
@@ -115,15 +120,16 @@ def _check_fluid(name: str, region: str, behind: Surface, places: Array) -> None
         )
 
 
-def _check_gauges(name: str, behind: Surface, gauges: Sequence[Vector]) -> None:
+def _check_gauges(name: str, behind: Surface, gauges: Sequence[tuple[str, Vector]]) -> None:
     if not gauges:
         return
-    below, _ = behind.depths(np.array(gauges))
+    below, _ = behind.depths(np.array([place for _, place in gauges]))
     wrong = np.flatnonzero(below > 1e-6 * behind.spacing)
     if len(wrong):
+        gauge, place = gauges[wrong[0]]
         raise ValueError(
-            f"gauges.pressure_gauges[{wrong[0]}] must not be behind {name}; found "
-            f"{tuple(gauges[wrong[0]])} m. Move the gauge into the fluid."
+            f"gauges.{gauge} must not be behind {name}; found {tuple(place)} m. Move the gauge "
+            "into the fluid."
         )
 
 

@@ -303,6 +303,18 @@ OPTIONS = {
         {"gauges.pressure_gauges": [[0.8, 0.4, 0.2]]},
         r"pressure_gauges\[0\] must not be behind boundary.meshes\[0\]; found \(0.8, 0.4, 0.2\) m",
     ),
+    "velocity": (
+        {"gauges.velocity_gauges": [[0.3, 0.4, 0.2], [0.8, 0.4, 0.2]]},
+        r"velocity_gauges\[1\] must not be behind boundary.meshes\[0\]; found \(0.8, 0.4, 0.2\) m",
+    ),
+    "buffer": (
+        {
+            "boundary.walls": (ORIGIN, (1.2, 0.8, 0.8)),
+            "boundary.open_faces": ["x+", "z+"],
+            "boundary.outflow": [{"face": "x+"}],
+        },
+        r"meshes\[0\] must stand outside of the buffers of inflows and outflows, 0.25 m",
+    ),
 }
 
 

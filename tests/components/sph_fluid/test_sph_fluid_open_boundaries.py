@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 from fluid_params import nested
+from tubes import LENGTH, MASS, SPACING, SPEED, TUBE, params_of, run, tube
 
 from quintet.components.sph_fluid import SphFluidParams
 from quintet.components.sph_fluid.component import SphFluid
@@ -13,46 +14,6 @@ from quintet.components.sph_fluid.open_boundaries.zones import zones
 from quintet.interfaces.component import Resources, outputs_of
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.params import read
-
-SPEED, SPACING, LENGTH = 0.5, 0.05, 2.0
-TUBE: dict[str, Any] = {  # fluid between plates that let it slip, in uniform motion
-    "spacing": SPACING,
-    "dimensions": 2,
-    "sound_speed": 10.0,
-    "gravity": [0.0, 0.0, 0.0],
-    "negative_pressure": True,
-    "density_diffusion": 0.1,
-    "fluid": [[[0.0, 0.0, 0.0], [LENGTH, 1.0, 0.5]]],
-    "initial.velocity": [SPEED, "0", "0"],
-    "viscosity.artificial": 0.02,
-    "boundary.walls": [[0.0, 0.0, 0.0], [LENGTH, 1.0, 0.5]],
-    "boundary.open_faces": ["x-", "x+"],
-    "boundary.wall_viscosity_factor": 0.0,
-    "boundary.inflow": [{"face": "x-", "speed": SPEED}],
-    "boundary.outflow": [{"face": "x+"}],
-    "gauges.mass_gauge": True,
-    "gauges.discharge_gauges": [1.0],
-    "gauges.velocity_gauges": [[1.0, 0.5, 0.25], [1.0, 0.5, 0.0], [5.0, 0.5, 0.25]],
-}
-MASS = 1000.0 * SPACING**2  # kg, of a particle over 1 m
-
-
-def params_of(table: dict[str, Any], **given: Any) -> SphFluidParams:
-    params, mistakes = read(SphFluidParams, nested(table | given), "water")
-    assert not mistakes, mistakes
-    return params
-
-
-def tube(**given: Any) -> SphFluid:
-    return SphFluid(params_of(TUBE, **given))
-
-
-def run(fluid: SphFluid, end: float) -> None:
-    now = 0.0
-    while now < end - 1e-12:
-        dt = min(fluid.stable_dt(), end - now)
-        fluid.step(dt)
-        now += dt
 
 
 def balance(fluid: SphFluid) -> dict[str, float]:
@@ -255,6 +216,22 @@ INFLOW = {"face": "x-", "speed": 1.0}
             {"boundary.obstacles": [[[0.1, 0.0, 0.0], [0.4, 1.0, 0.2]]],
              "fluid": [[[0.5, 0.0, 0.0], [LENGTH, 1.0, 0.5]]]},
             r"obstacles\[0\] must stand outside of the buffers",
+        ),
+        (
+            {"boundary.outflow": [{"face": "z+"}], "boundary.open_faces": ["x-", "z+"]},
+            r"must all be across the same axis, .* found x-, z\+\. Move them to one face or to two",
+        ),
+        (
+            {"boundary.outflow": [{"face": "x+", "pressure": -100.0}], "negative_pressure": False},
+            r"pressure must be from 0 to 1\.355e\+04 Pa, .* found -100 Pa\. Raise it, or set neg",
+        ),
+        (
+            {"boundary.outflow": [{"face": "x+", "pressure": -2e4}]},
+            r"pressure must be from -7453 to 1\.355e\+04 Pa, .* found -20000 Pa\. Raise it\.",
+        ),
+        (
+            {"boundary.outflow": [{"face": "x+", "pressure": 2e4}]},
+            r"densities within 10 % of 1000 .* found 20000 Pa\. Raise sound_speed, or lower the p",
         ),
     ],
 )  # fmt: skip
