@@ -131,12 +131,13 @@ class Gauges:
 
     def _front(self, state: State, lists: Lists) -> Array:
         axis = "xyz".index(str(self.params.gauges.front_gauge))
-        along = state.position_density[: state.fluid, axis]
+        along = state.position_density[: state.fluid, axis].copy()
+        is_held = state.role > 0  # by buffers of inflows and outflows
+        if not is_held.all():
+            along[is_held] = -math.inf
         ahead = -math.inf
         if len(state.reference):
-            ahead = furthest(
-                axis, 1.0 / self.lone, state.fluid, state.position_density, lists, self.constants
-            )
+            ahead = furthest(along, 1.0 / self.lone, state.position_density, lists, self.constants)
         # At the start there are no lists, and no spray either.
         ahead, furthest_of_all = self.ranks.greatest(ahead, float(along.max()))
         front = ahead if math.isfinite(ahead) else furthest_of_all
@@ -148,9 +149,9 @@ class Gauges:
         squares = u * u + v * v + w * w
         count, columns = without_buffers(state, self.ranks.fluid(state), [x, y, z, squares])
         sums = self.ranks.sums(state, columns)
-        (fastest,) = self.ranks.greatest(float(squares.max()))
+        (fastest,) = self.ranks.greatest(float(columns[3].max()))
         particle_mass = self.constants.mass * self.params.slab_thickness  # kg
-        centre, mass = sums[:3] / count, particle_mass * count
+        centre, mass = sums[:3] / max(count, 1), particle_mass * count
         deeper = potential_of_crossings(state, self.params, particle_mass)
         return {
             "motion_gauge.speed": np.sqrt([fastest]),

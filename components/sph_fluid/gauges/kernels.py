@@ -70,14 +70,17 @@ def fill_columns(
 
 @njit(**EXACT)
 def furthest(
-    axis: int, fewest: float, split: int, position: Array, lists: Lists, constants: Constants
+    along: Array, fewest: float, position: Array, lists: Lists, constants: Constants
 ) -> float:
-    """Greatest position along an axis of fluid that has so many fluid neighbours or more."""
+    """Greatest position along an axis of fluid that has so many fluid neighbours or more.
+
+    `along` (fluid,) m is that position, -inf of particles that are no front.
+    """
     begin, middle, _, neighbour = lists
     reach2 = (SUPPORT * constants.smoothing.length) ** 2
     front = -math.inf
-    for i in range(split):
-        if position[i, axis] > front:
+    for i in range(along.shape[0]):
+        if along[i] > front:
             count = -1  # each is its own neighbour
             for k in range(begin[i], middle[i]):
                 j = neighbour[k]
@@ -85,5 +88,5 @@ def furthest(
                 z = position[i, 2] - position[j, 2]
                 count += int(x * x + y * y + z * z < reach2)
             if count >= fewest:
-                front = position[i, axis]
+                front = along[i]
     return front

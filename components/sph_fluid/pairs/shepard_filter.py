@@ -22,9 +22,11 @@ class ShepardFilter:
         return state.steps % self.every == self.every - 1
 
     def apply(self, state: State, lists: Lists, team: Team) -> None:
-        """Filter the fluid's density, and compute pressures again."""
+        """Filter the fluid's density, and compute pressures again; buffers keep theirs."""
         density, rows = np.empty(state.fluid), slice(state.fluid)
         arrays = (state.position_density, lists, self.constants, density)
         team.run(filter_density, state.fluid, *arrays)
+        if len(state.role):
+            density = np.where(state.role == 0, density, state.position_density[rows, 3])
         state.position_density[rows, 3] = density
         write_pressure(self.constants, state.position_density[rows], state.velocity_pressure[rows])
