@@ -13,7 +13,7 @@ from quintet.components.sph_fluid.boundary.samples import Samples
 from quintet.components.sph_fluid.constants import constants
 from quintet.components.sph_fluid.integration.method import StepTask
 from quintet.components.sph_fluid.kernels import write_pressure
-from quintet.components.sph_fluid.mass_balance.losses import refuse_many_lost
+from quintet.components.sph_fluid.mass_balance.losses import begin_books, refuse_many_lost
 from quintet.components.sph_fluid.pairs.interaction import Interaction
 from quintet.components.sph_fluid.pairs.neighbour_lists import FluidLists
 from quintet.components.sph_fluid.params import SphFluidParams
@@ -128,6 +128,7 @@ class SphFluid(Component):
             self.all_ranks.follow_samples(fields)
             self.boundary.follow_samples(self.state, fields)
             self.symmetry.require_before(fields["surface.position"])
+            self.open_boundaries.refuse_samples(fields["surface.position"])
 
     def step(self, dt: float) -> None:
         """Advance by dt [s]."""
@@ -206,11 +207,12 @@ class SphFluid(Component):
     def save(self) -> Fields:
         """Copy out all state; the neighbour list is kept as the places it was made from."""
         whole = self.all_ranks.whole(self.state).save()
-        clocks = self.frame.save() | self.pistons.save()
-        return whole | {"placed": np.array(self.samples.placed)} | clocks
+        others = self.frame.save() | self.pistons.save() | self.open_boundaries.save()
+        return whole | {"placed": np.array(self.samples.placed)} | others
 
     def load(self, state: Fields) -> None:
         """Come back to a saved state, of this run or of another that it begins from."""
+        self.open_boundaries.refuse_other(state)
         most = math.inf if self.items_vary else self.born
         diagnostics.refuse_other_samples(state, len(self.samples.volume))
         diagnostics.refuse_other_particles(state, most, self.all_ranks.boundary(self.state))
@@ -225,9 +227,10 @@ class SphFluid(Component):
             self._list()
 
     def begin_from(self, state: Fields) -> None:
-        """Begin from the state of another run; the tank's motion begins with this one."""
+        """Begin from the state of another run; motions, books and warnings begin with this one."""
         clocks = {*self.frame.save(), *self.pistons.save()}
         super().begin_from({key: rows for key, rows in state.items() if key not in clocks})
+        begin_books(self.state, self.all_ranks.fluid(self.state))
         self.pistons.refuse_jump(state)
 
     def totals(self) -> Totals:

@@ -132,15 +132,22 @@ def _worst(state: State, spacing: float, dt: float) -> int:
 def refuse_other_particles(saved: Fields, fluid: float, boundary: int) -> None:
     """Refuse a state of another fluid, or of other walls and surface samples.
 
-    Particles may have left the domain since the start: those that are there count.
+    Particles may have left the domain since the start: those that ever were there count. `fluid`
+    is infinite where more of them may come.
     """
     there, born = len(saved["identity"]), int(np.max(saved["identity"], initial=-1)) + 1
     walls = len(saved["sample"])
-    if there > fluid or born > fluid or walls != boundary:
+    if there > fluid or born > fluid:
         raise SceneError(
-            f"the state that it begins from must be of its {fluid:g} fluid and {boundary} wall and "
-            f"surface particles; found {there} and {walls}. Make fluid, walls and bodies as they "
-            "were in that run."
+            f"the state that it begins from must be of a fluid with {fluid:.0f} particles or fewer "
+            f"at the start; found {there} particles, of at least {born} that there were. Make "
+            "fluid and spacing as they were in that run."
+        )
+    if walls != boundary:
+        raise SceneError(
+            f"the state that it begins from must be of its {boundary} wall and surface particles; "
+            f"found {walls}. Make spacing, walls, obstacles, meshes and bodies as they were in "
+            "that run."
         )
 
 

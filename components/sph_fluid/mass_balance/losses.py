@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quintet.components.shared.geometry.bounds import Bounds
+from quintet.components.sph_fluid.mass_balance.sums import without_buffers
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.setup.geometry import FACES
 from quintet.components.sph_fluid.state import Array, State
@@ -77,6 +78,22 @@ def book(state: State, by_face: Sequence[int], first: Array) -> None:
     state.lost_through += np.array(by_face)
     if len(first) and not len(state.first_lost):
         state.first_lost = first[np.argmin(first[:, 0])]
+
+
+def begin_books(state: State, count: int) -> None:
+    """Count what comes and goes, and judge the fluid, from the present state on.
+
+    Parameters
+    ----------
+    state : State
+    count : int
+        Particles on all ranks, with those of buffers.
+    """
+    state.at_start, _ = without_buffers(state, count, [])
+    for counts in (state.passed, state.lost_through, state.crossings, state.judged):
+        counts[:] = 0
+    state.first_lost = np.zeros(0)
+    state.returned, state.removed, state.carried = 0, 0, 0.0
 
 
 def balance(state: State, params: SphFluidParams) -> dict[str, int]:

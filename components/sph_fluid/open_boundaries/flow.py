@@ -27,6 +27,10 @@ from quintet.components.sph_fluid.constants import constants
 from quintet.components.sph_fluid.kernels import Rates, write_pressure
 from quintet.components.sph_fluid.open_boundaries.kernels import fit_fields
 from quintet.components.sph_fluid.open_boundaries.rows import NewRows, add_rows, take_out
+from quintet.components.sph_fluid.open_boundaries.saved_faces import (
+    numbers_of,
+    refuse_other_faces,
+)
 from quintet.components.sph_fluid.open_boundaries.zones import (
     Zone,
     at_rest,
@@ -37,6 +41,8 @@ from quintet.components.sph_fluid.open_boundaries.zones import (
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.setup.inflow_outflow import Inflow, Outflow, buffer_layers
 from quintet.components.sph_fluid.state import Array, State, Whole
+from quintet.interfaces.component import Fields
+from quintet.interfaces.errors import StepError
 
 BEFORE = 1.0  # smoothing lengths before a buffer, where it takes values of the fluid
 AROUND = 2.0  # smoothing lengths around that place that are looked at: the kernel's radius
@@ -198,3 +204,24 @@ class Flow:
             rates.xsph_velocity[self.held] = 0.0
         if len(state.minus_rho_div_u):
             state.minus_rho_div_u[self.held] = 0.0
+
+    def refuse_samples(self, points: Array) -> None:
+        """Refuse samples (n, 3) m of bodies in buffers, which would pass through them."""
+        for zone in self.zones:
+            if (inside := zone.holds(points)).any():
+                x, y, z = points[np.argmax(inside)].tolist()
+                raise StepError(
+                    f"bodies must stay outside of the buffer of {zone.name}, {zone.length:.4g} m "
+                    f"from its face; found {int(inside.sum())} of {len(points)} surface samples "
+                    f"in it, the first at ({x:.4g}, {y:.4g}, {z:.4g}) m. Move the face or the "
+                    "body, or end the run earlier.",
+                    (x, y, z),
+                )
+
+    def save(self) -> dict[str, Whole]:
+        """Copy out which faces have buffers."""
+        return numbers_of([zone.name for zone in self.zones])
+
+    def refuse_other(self, saved: Fields) -> None:
+        """Refuse a saved state with buffers at other faces."""
+        refuse_other_faces(saved, [zone.name for zone in self.zones])

@@ -3,7 +3,9 @@
 from typing import Protocol
 
 from quintet.components.sph_fluid.kernels import Rates
-from quintet.components.sph_fluid.state import State
+from quintet.components.sph_fluid.open_boundaries.saved_faces import refuse_other_faces
+from quintet.components.sph_fluid.state import Array, State, Whole
+from quintet.interfaces.component import Fields
 
 
 class OpenBoundaries(Protocol):
@@ -21,6 +23,15 @@ class OpenBoundaries(Protocol):
     def hold(self, state: State, rates: Rates) -> None:
         """Let the particles of buffers move as they do, whatever acts on them."""
 
+    def refuse_samples(self, points: Array) -> None:
+        """Refuse samples (n, 3) m of bodies in buffers."""
+
+    def save(self) -> dict[str, Whole]:
+        """Copy out which faces have buffers."""
+
+    def refuse_other(self, saved: Fields) -> None:
+        """Refuse a saved state with buffers at other faces."""
+
 
 class NoOpenBoundaries:
     """A fluid that stays in its tank, or goes over open faces unseen."""
@@ -36,3 +47,14 @@ class NoOpenBoundaries:
 
     def hold(self, state: State, rates: Rates) -> None:
         """Nothing to do: there are no buffers."""
+
+    def refuse_samples(self, points: Array) -> None:
+        """Nothing to refuse: there are no buffers."""
+
+    def save(self) -> dict[str, Whole]:
+        """Nothing to remember."""
+        return {}
+
+    def refuse_other(self, saved: Fields) -> None:
+        """Refuse a saved state with buffers."""
+        refuse_other_faces(saved, [])

@@ -7,6 +7,7 @@ import pytest
 from fluid_params import fluid_params
 
 from quintet.components.sph_fluid.component import SphFluid
+from quintet.components.sph_fluid.mass_balance.losses import begin_books
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.interfaces.errors import StepError
 
@@ -104,3 +105,16 @@ def test_a_limit_of_losses_needs_a_tank() -> None:
     with pytest.raises(ValueError, match=r"lost_limit needs boundary\.walls"):
         fluid_params(spacing=0.02, sound_speed=20.0, fluid=FLUID, lost_limit=0.1)
     assert SphFluidParams.__dataclass_fields__["lost_limit"].default is None
+
+
+def test_books_that_begin_again_forget_all_that_came_and_went() -> None:
+    fluid = tank()
+    state = fluid.state
+    state.passed = np.array([3, 2])
+    state.lost_through[:], state.crossings[:], state.judged[:] = 1, 2, 3.0
+    state.first_lost, state.returned, state.removed, state.carried = np.ones(5), 1, 2, 4.0
+    begin_books(state, state.fluid)
+    assert state.at_start == state.fluid
+    assert not (state.passed.any() or state.lost_through.any() or state.crossings.any())
+    assert not (state.judged.any() or len(state.first_lost))
+    assert (state.lost, state.returned, state.removed, state.carried) == (0, 0, 0, 0.0)
