@@ -239,7 +239,7 @@ class SphFluid(Component):
         if len(self.state.reference):
             self.symmetry.write_images(self.state)
             totals.internal += self.boundary.energy(self.state, self.lists.arrays, self.team)
-        totals.work = self.frame.work + self.pistons.work
+        totals.work += self.frame.work + self.pistons.work
         return totals
 
     def view(self) -> Fields:

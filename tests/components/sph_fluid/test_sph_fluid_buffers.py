@@ -1,0 +1,127 @@
+"""Buffers of inflows and outflows: they are no part of the fluid, and states keep them."""
+
+import re
+from typing import Any
+
+import numpy as np
+import pytest
+from tubes import LENGTH, MASS, SPACING, SPEED, run, tube
+
+from quintet.components.sph_fluid.component import SphFluid
+from quintet.interfaces.component import outputs_of
+from quintet.interfaces.errors import SceneError, StepError
+
+INFLOW, OUTFLOW = {"face": "x-", "speed": SPEED}, {"face": "x+"}
+
+
+def with_buffers(inflow: list[dict[str, Any]], outflow: list[dict[str, Any]]) -> SphFluid:
+    return tube(**{"boundary.inflow": inflow, "boundary.outflow": outflow})
+
+
+@pytest.mark.parametrize(
+    ("before", "now", "words"),
+    [
+        (([INFLOW], [OUTFLOW]), ([INFLOW], []), "order, inflow x-; found inflow x-, outflow x+."),
+        (([INFLOW], []), ([INFLOW], [OUTFLOW]), "order, inflow x-, outflow x+; found inflow x-."),
+        (([], []), ([INFLOW], [OUTFLOW]), "order, inflow x-, outflow x+; found none."),
+        (([INFLOW], [OUTFLOW]), ([], []), "order, none; found inflow x-, outflow x+."),
+        (
+            ([INFLOW], [OUTFLOW]),
+            ([{"face": "x+", "speed": SPEED}], [{"face": "x-"}]),
+            "order, inflow x+, outflow x-; found inflow x-, outflow x+.",
+        ),
+    ],
+)
+def test_a_state_with_buffers_at_other_faces_is_refused(before: Any, now: Any, words: str) -> None:
+    first, second = with_buffers(*before), with_buffers(*now)
+    first.step(1e-4)
+    with pytest.raises(SceneError, match=re.escape(words)):
+        second.begin_from(first.save())
+
+
+def test_books_begin_again_with_a_run_that_begins_from_another() -> None:
+    inflow = {"boundary.inflow": [{"face": "x-", "speed": 1.2 * SPEED}]}
+    fluid, other = tube(**inflow), tube(**inflow)
+    run(fluid, 0.4)
+    assert fluid.state.passed.min() > 0
+    assert fluid.totals().work == MASS * fluid.state.carried != 0.0
+    other.begin_from(fluid.save())
+    count = int((other.state.role == 0).sum())
+    balance, outputs = other.totals().mass_balance, outputs_of(other)
+    assert balance.pop("at the start") == pytest.approx(count * MASS)
+    assert set(balance.values()) == {0.0}
+    assert other.totals().work == 0.0
+    assert [outputs[f"mass_gauge.{name}"] for name in ("entered", "left", "imbalance")] == [0, 0, 0]
+    run(other, 0.2)
+    totals = other.totals()
+    assert sum(totals.mass_balance.values()) == pytest.approx(totals.mass, rel=1e-13)
+    assert outputs_of(other)["mass_gauge.entered"] > 0.0
+
+
+def test_the_books_alone_differ_from_a_run_without_interruption() -> None:
+    fluid, other = tube(), tube()
+    run(fluid, 0.2)
+    other.begin_from(fluid.save())
+    for each in (fluid, other):
+        run(each, 0.2)
+    again = other.save()
+    differing = {name for name, array in fluid.save().items() if (again[name] != array).any()}
+    assert differing <= {"at_start", "passed", "carried", "judged"}
+
+
+def test_a_state_of_more_fluid_is_refused_with_the_number_that_there_was() -> None:
+    fluid = tube(**{"boundary.inflow": [], "boundary.outflow": []})
+    smaller = tube(
+        **{
+            "boundary.inflow": [],
+            "boundary.outflow": [],
+            "fluid": [[[0.0, 0.0, 0.0], [1.0, 1.0, 0.5]]],
+        }
+    )
+    state = {name: np.array(array) for name, array in fluid.save().items()}
+    with pytest.raises(SceneError, match="with 200 particles or fewer at the start; found 400"):
+        smaller.begin_from(state)
+
+
+def test_a_state_of_other_walls_is_refused() -> None:
+    fluid = tube()
+    longer = tube(**{"boundary.walls": [[0.0, 0.0, 0.0], [LENGTH + 0.5, 1.0, 0.5]]})
+    words = r"must be of its \d+ wall and surface particles; found \d+\. Make spacing, walls"
+    with pytest.raises(SceneError, match=words):
+        longer.begin_from(fluid.save())
+
+
+def test_speed_and_front_are_of_the_fluid_without_buffers() -> None:
+    fluid = tube(**{"gauges.motion_gauge": True, "gauges.front_gauge": "x"})
+    run(fluid, 0.05)
+    held = np.flatnonzero(fluid.state.role)
+    free = np.flatnonzero(fluid.state.role == 0)
+    fluid.state.velocity_pressure[held, 0] = 9.0
+    outputs = outputs_of(fluid)
+    assert outputs["motion_gauge.speed"] < 1.1 * SPEED
+    furthest = fluid.state.position_density[free, 0].max()
+    assert outputs["front_gauge.position"] == pytest.approx(furthest + 0.5 * SPACING, abs=1e-12)
+    assert furthest < fluid.state.position_density[held, 0].max() - 3.0 * SPACING
+
+
+def test_the_density_filter_leaves_buffers_alone() -> None:
+    fluid = tube(**{"shepard_every": 1})
+    run(fluid, 0.02)
+    held = fluid.state.role > 0
+    rows = np.flatnonzero(held)
+    fluid.state.position_density[rows, 3] = 1007.0
+    before = fluid.state.position_density[: fluid.state.fluid, 3].copy()
+    assert fluid.filter is not None
+    fluid.filter.apply(fluid.state, fluid.lists.arrays, fluid.team)
+    after = fluid.state.position_density[: fluid.state.fluid, 3]
+    assert (after[held] == 1007.0).all()
+    assert (after[~held] != before[~held]).any()
+
+
+def test_samples_of_bodies_in_buffers_end_the_run() -> None:
+    fluid = tube()
+    clear, inside = [1.0, 0.5, 0.2], [LENGTH - 0.1, 0.5, 0.2]
+    fluid.open_boundaries.refuse_samples(np.array([clear]))
+    words = r"buffer of outflow x\+, 0\.25 m from its face; found 1 of 2 surface samples in it"
+    with pytest.raises(StepError, match=words):
+        fluid.open_boundaries.refuse_samples(np.array([clear, inside]))
