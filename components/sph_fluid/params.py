@@ -283,7 +283,8 @@ class SphFluidParams:
     @property
     def passages(self) -> list[Face]:
         """Faces through which fluid comes, then those through which it goes."""
-        return [each.face for each in (*self.boundary.inflow, *self.boundary.outflow)]
+        entrances = [each.face for each in self.boundary.inflow]
+        return entrances + [each.face for each in self.boundary.outflow]
 
     @property
     def closed_faces(self) -> tuple[Face, ...]:

@@ -114,7 +114,8 @@ def _require_whole_section(where: str, section: float, boundary: Boundary, reach
     """
     if boundary.tank is None:
         return
-    passages = [each.face for each in (*boundary.inflow, *boundary.outflow)]
+    passages = [each.face for each in boundary.inflow]
+    passages += [each.face for each in boundary.outflow]
     low, high = boundary.tank[0][0], boundary.tank[1][0]
     is_periodic = "x" in boundary.periodic
     depth = {"x-": section - low, "x+": high - section}  # m, inside each face
