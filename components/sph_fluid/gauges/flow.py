@@ -14,7 +14,7 @@ from quintet.components.sph_fluid.boundary.symmetry_planes import SymmetryPlanes
 from quintet.components.sph_fluid.constants import constants
 from quintet.components.sph_fluid.gauges.nearness import near_places
 from quintet.components.sph_fluid.mass_balance.sums import without_buffers
-from quintet.components.sph_fluid.open_boundaries.kernels import fit_fields
+from quintet.components.sph_fluid.open_boundaries.kernels import fit_fields, near_rows
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.ranks.method import Ranks
 from quintet.components.sph_fluid.state import Array, State
@@ -51,7 +51,9 @@ class FlowGauges:
         is_near = partial(near_places, self.points.reshape(-1, 3), self.reach)
         position, velocity, split = self.ranks.near(state, is_near)
         fields = np.empty((len(self.points), 5))
-        fit_fields(self.points, position[:split], velocity[:split], self.constants, fields)
+        fluid = position[:split], velocity[:split]
+        near = near_rows(self.points, position[:split], self.reach)
+        fit_fields(self.points, *near, *fluid, self.constants, fields)
         return fields[:, :3].copy()
 
     def _discharge(self, state: State) -> Array:

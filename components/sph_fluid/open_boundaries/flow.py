@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 from quintet.components.sph_fluid.boundary.kernels.mirrored_density import NO_FLUID
 from quintet.components.sph_fluid.constants import constants
 from quintet.components.sph_fluid.kernels import Rates, write_pressure
-from quintet.components.sph_fluid.open_boundaries.kernels import fit_fields
+from quintet.components.sph_fluid.open_boundaries.kernels import fit_fields, near_rows
 from quintet.components.sph_fluid.open_boundaries.rows import NewRows, add_rows, take_out
 from quintet.components.sph_fluid.open_boundaries.saved_faces import (
     numbers_of,
@@ -140,7 +140,10 @@ class Flow:
         for number, zone in enumerate(self.zones):
             rows = np.flatnonzero(state.role == number + 1)
             points = state.position_density[rows, :3]
-            fields = self._before(state, zone, points)
+            if number < len(self.inflow) and self.inflow[number].density == "hydrostatic":
+                fields = np.zeros((len(rows), 5))  # the fluid gives this buffer nothing
+            else:
+                fields = self._before(state, zone, points)
             near = fields[:, 4] >= NO_FLUID
             density = np.where(near, fields[:, 3], state.position_density[rows, 3])
             if number < len(self.inflow):
@@ -161,12 +164,16 @@ class Flow:
         depth = zone.depth(state.position_density[: state.fluid])
         is_near: NDArray[np.bool_] = np.abs(depth - inside) < AROUND * h
         rows = np.flatnonzero(is_near & (state.role == 0))
-        beside = points[:, np.newaxis].copy()
-        beside[:, :, zone.axis] = zone.face + zone.inward * inside
-        fields = np.empty((len(points), 5))
-        around = state.position_density[rows], state.velocity_pressure[rows]
-        fit_fields(beside, *around, self.constants, fields)
-        return fields
+        beside = points.copy()
+        beside[:, zone.axis] = zone.face + zone.inward * inside
+        # Layers of an inflow are behind each other: one fit serves all.
+        places, place_of = np.unique(beside, axis=0, return_inverse=True)
+        places = np.ascontiguousarray(places[:, np.newaxis])
+        fields = np.empty((len(places), 5))
+        position, velocity = state.position_density[rows], state.velocity_pressure[rows]
+        near = near_rows(places, position, AROUND * h)
+        fit_fields(places, *near, position, velocity, self.constants, fields)
+        return fields[place_of.ravel()]
 
     def _straighten(self, state: State, zone: Zone, rows: Whole, along: Array) -> None:
         """Let rows move straight out, as fast as the fluid, or, where that is nan, as they do."""

@@ -2,6 +2,7 @@
 
 import numpy as np
 from numba import njit
+from scipy.spatial import cKDTree
 
 from quintet.components.shared.numba_options import EXACT
 from quintet.components.shared.smoothing.cubic_spline import SUPPORT
@@ -13,13 +14,14 @@ from quintet.components.sph_fluid.boundary.kernels.mirrored_density import (
     solve,
 )
 from quintet.components.sph_fluid.laws import Constants
-from quintet.components.sph_fluid.state import Array
+from quintet.components.sph_fluid.state import Array, Whole
 
 
 @njit(**EXACT)
 def fit_fields(
-    points: Array, position: Array, velocity: Array, constants: Constants, fields: Array
-) -> None:
+    points: Array, begin: Whole, near: Whole, position: Array, velocity: Array,
+    constants: Constants, fields: Array,
+) -> None:  # fmt: skip
     """Write velocity and density of the fluid at points, and how much fluid is around them.
 
     Planes are fitted by moving least squares, which meet linear fields exactly, also where fluid
@@ -29,6 +31,8 @@ def fit_fields(
     ----------
     points : (m, k, 3) float array, m
         Of each of m places, the place itself and its images.
+    begin, near : (m k + 1,) and (pairs,) int arrays
+        Rows of the fluid near each of these points, as of `near_rows`.
     position, velocity : (n, 4) float arrays
         Of fluid, as of the state.
     constants : Constants
@@ -43,7 +47,9 @@ def fit_fields(
         moments = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
         moments_of[:] = 0.0
         for image in range(points.shape[1]):
-            for j in range(position.shape[0]):
+            at = p * points.shape[1] + image
+            for entry in range(begin[at], begin[at + 1]):
+                j = near[entry]
                 dz = position[j, 2] - points[p, image, 2]
                 dx = position[j, 0] - points[p, image, 0]
                 dy = position[j, 1] - points[p, image, 1]
@@ -72,3 +78,26 @@ def fit_fields(
             gx, gy, gz = solve(variance, bx, by, bz)
             fields[p, f] = mean - gx * mx - gy * my - gz * mz
         fields[p, 3] += constants.density
+
+
+def near_rows(points: Array, position: Array, reach: float) -> tuple[Whole, Whole]:
+    """Rows of particles near points, in the order of the rows.
+
+    Parameters
+    ----------
+    points : (m, k, 3) float array, m
+    position : (n, 4) float array
+        Of fluid, as of the state.
+    reach : float, m
+
+    Returns
+    -------
+    begin : (m k + 1,) int array
+        Where the rows of each point begin, and, last, where they end.
+    near : (pairs,) int array
+    """
+    tree = cKDTree(position[:, :3])
+    # A little further: the kernel decides which ones are within reach.
+    rows = tree.query_ball_point(points.reshape(-1, 3), (1.0 + 1e-9) * reach, return_sorted=True)
+    begin = np.concatenate([[0], np.cumsum([len(each) for each in rows])]).astype(np.int64)
+    return begin, np.concatenate([np.zeros(0, np.int64), *rows]).astype(np.int64)

@@ -8,6 +8,8 @@ import pytest
 from tubes import LENGTH, MASS, SPACING, SPEED, run, tube
 
 from quintet.components.sph_fluid.component import SphFluid
+from quintet.components.sph_fluid.open_boundaries import flow
+from quintet.components.sph_fluid.open_boundaries.kernels import near_rows
 from quintet.interfaces.component import outputs_of
 from quintet.interfaces.errors import SceneError, StepError
 
@@ -125,3 +127,33 @@ def test_samples_of_bodies_in_buffers_end_the_run() -> None:
     words = r"buffer of outflow x\+, 0\.25 m from its face; found 1 of 2 surface samples in it"
     with pytest.raises(StepError, match=words):
         fluid.open_boundaries.refuse_samples(np.array([clear, inside]))
+
+
+def test_rows_near_points_are_those_within_reach_in_order() -> None:
+    generator = np.random.default_rng(1)
+    position, points = generator.random((300, 4)), generator.random((7, 2, 3))
+    begin, near = near_rows(points, position, 0.3)
+    for number, point in enumerate(points.reshape(-1, 3)):
+        distance = np.linalg.norm(position[:, :3] - point, axis=1)
+        within = np.flatnonzero(distance < 0.3)
+        assert near[begin[number] : begin[number + 1]].tolist() == within.tolist()
+    begin, near = near_rows(points, position[:0], 0.3)
+    assert not begin.any()
+    assert not len(near)
+
+
+def test_layers_of_an_inflow_share_fits_and_a_hydrostatic_one_needs_none(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    fits: list[int] = []
+
+    def counting(points: Any, position: Any, reach: float) -> Any:
+        fits.append(len(points))
+        return near_rows(points, position, reach)
+
+    monkeypatch.setattr(flow, "near_rows", counting)
+    fluid = tube(**{"boundary.outflow": []})
+    assert fits == [10]
+    assert int((fluid.state.role == 1).sum()) == 50
+    tube(**{"boundary.outflow": [], "boundary.inflow": [{**INFLOW, "density": "hydrostatic"}]})
+    assert fits == [10]
