@@ -230,9 +230,11 @@ def _wanted_words(wanted: Row) -> list[str]:
 
 def status_of(summary: Row, refinements: int) -> int:
     """Exit status of the worst run; 1 where no refinement meets what is wanted or expected."""
+    peers = summary.get("peers", ())
     states = [row["status"] for row in summary["rows"]]
-    states += [row["status"] for peer in summary.get("peers", ()) for row in peer["rows"]]
-    if "interrupted" in states or len(summary["rows"]) < refinements:
+    states += [row["status"] for peer in peers for row in peer["rows"]]
+    left = len(summary["rows"]) < refinements or any(p["runs"] > len(p["rows"]) for p in peers)
+    if "interrupted" in states or left:
         return results.INTERRUPTED
     if any(state != "done" for state in states):
         return results.FAILED

@@ -11,10 +11,12 @@ from spring_scene import command, found_by, write
 from quintet.components.meshless_gas.exact.riemann import Side, solution
 from quintet.coupler.measures.expectation import Expectation
 from quintet.coupler.scene.read import library, load
+from quintet.coupler.study.peers.beside import Beside
 from quintet.coupler.study.peers.outputs import cpu_in, curve_in, version_in
 from quintet.coupler.study.peers.peer import read_peers
 from quintet.coupler.study.peers.process import executable
 from quintet.coupler.study.peers.table import CpuTable, CurveTable, peers_of, read_peer
+from quintet.coupler.study.study import status_of
 from quintet.interfaces.errors import SceneError
 from quintet.scenarios.shock_tube.peers.openfoam import errors
 
@@ -110,6 +112,16 @@ def test_a_program_is_measured_as_the_scene_is_and_runs_in_turns(tmp_path, capsy
     result = json.loads((tmp_path / "all" / "toy_late" / "peer.json").read_text())
     assert result["commands"] == [[sys.executable, "toy.py", "0.01"]]
     assert "curve.txt" in result["inputs"]["toy.py"]
+
+
+def test_a_study_whose_program_has_runs_left_was_interrupted(tmp_path):
+    path = write_peer(tmp_path)
+    beside = Beside(read_peers(["toy"], load(str(path))), tmp_path / "all", lambda: True, False)
+    beside.turn(0)
+    beside.rest(1)
+    summary = {"rows": [{"status": "done"}], "has_expectations": False} | beside.summary()
+    assert summary["peers"][0]["runs"] == 3 and summary["peers"][0]["rows"] == []
+    assert status_of({**summary, "recommended": None}, 1) == 130
 
 
 def test_the_page_of_the_study_has_the_program(tmp_path):
