@@ -109,7 +109,10 @@ class Peer:
     def _carry_out(self, run: PeerRunTable, place: Path, stop: Callable[[], bool]) -> Row:
         """Run all commands in a temporary folder; return status, costs and inputs."""
         begun = self._inputs(run)
-        with tempfile.TemporaryDirectory(prefix="quintet-peer-") as name:
+        # A file that cannot be removed costs room, not the result.
+        with tempfile.TemporaryDirectory(
+            prefix="quintet-peer-", ignore_cleanup_errors=True
+        ) as name:
             fresh = Path(name)
             for file, text in begun["inputs"].items():
                 (fresh / file).parent.mkdir(parents=True, exist_ok=True)

@@ -7,13 +7,17 @@ import signal
 import subprocess
 import sys
 import time
+import uuid
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
-from quintet.coupler.launch.processes import environment
+from quintet.coupler.launch.companion import Companion, once_gone
+from quintet.coupler.launch.processes import end_marked, environment
 
 ASKED = 0.02  # s between two looks at the process
+MARK = "QUINTET_PEER"  # in the environment of a command, and of all that it starts
 THREADS = 1  # of every program, so that CPU times compare
 DONE, FAILED, STALLED, INTERRUPTED = "done", "failed", "stalled", "interrupted"
 
@@ -45,6 +49,9 @@ def run_command(
 ) -> Ended:
     """Run a command in a folder until it ends, or time is up, or it is stopped.
 
+    No process that it started survives it, whatever session that is in by then; nor if this
+    process is killed.
+
     Parameters
     ----------
     command : list of str
@@ -53,23 +60,38 @@ def run_command(
     log : Path
         To which its output is added.
     seconds : float
-        After which it is killed, with all of its session.
+        After which it is killed, with all that it started.
     stop : callable
         Whether to end early.
     variables : mapping
         Of its environment, where they are not set already.
     """
-    began = time.monotonic()
-    with open(log, "ab") as file:
-        process = subprocess.Popen(
-            command,
-            cwd=folder,
-            stdin=subprocess.DEVNULL,
-            stdout=file,
-            stderr=file,
-            start_new_session=True,
-            env={**variables, **environment(THREADS), "PWD": str(folder)},
-        )
+    mark = uuid.uuid4().hex
+    marks = {**variables, **environment(THREADS), "PWD": str(folder), MARK: mark}
+    end_all = partial(end_marked, MARK, mark)
+    companion = Companion(once_gone(end_all))
+    try:
+        began = time.monotonic()
+        with open(log, "ab") as file:
+            process = subprocess.Popen(
+                command,
+                cwd=folder,
+                stdin=subprocess.DEVNULL,
+                stdout=file,
+                stderr=file,
+                start_new_session=True,
+                env=marks,
+            )
+        return _wait(process, began, seconds, stop)
+    finally:
+        end_all()
+        companion.close()
+
+
+def _wait(
+    process: subprocess.Popen[bytes], began: float, seconds: float, stop: Callable[[], bool]
+) -> Ended:
+    """Wait for the end of a process, or kill its session; return how it ended and its costs."""
     reason = ""
     try:
         ended, code, used = os.wait4(process.pid, os.WNOHANG)
@@ -83,7 +105,7 @@ def run_command(
         _kill(process.pid)
         process.wait()
         raise
-    _kill(process.pid)  # what it has started and left running
+    _kill(process.pid)  # the rest of its session, also without the mark
     process.returncode = os.waitstatus_to_exitcode(code)
     return Ended(
         reason or (DONE if process.returncode == 0 else FAILED),

@@ -2,22 +2,26 @@
 
 import json
 import math
+import subprocess
 import sys
+import time
 
 import numpy as np
 import pytest
 from spring_scene import command, found_by, write
 
 from quintet.components.meshless_gas.exact.riemann import Side, solution
+from quintet.coupler.launch.processes import marked
 from quintet.coupler.measures.expectation import Expectation
 from quintet.coupler.scene.read import library, load
 from quintet.coupler.study.peers.beside import Beside
 from quintet.coupler.study.peers.outputs import cpu_in, curve_in, version_in
 from quintet.coupler.study.peers.peer import read_peers
-from quintet.coupler.study.peers.process import executable
+from quintet.coupler.study.peers.process import executable, run_command
 from quintet.coupler.study.peers.table import CpuTable, CurveTable, peers_of, read_peer
 from quintet.coupler.study.study import status_of
 from quintet.interfaces.errors import SceneError
+from quintet.interfaces.lines.process_status import running
 from quintet.scenarios.shock_tube.peers.openfoam import errors
 
 REFINEMENTS = """
@@ -122,6 +126,55 @@ def test_a_study_whose_program_has_runs_left_was_interrupted(tmp_path):
     summary = {"rows": [{"status": "done"}], "has_expectations": False} | beside.summary()
     assert summary["peers"][0]["runs"] == 3 and summary["peers"][0]["rows"] == []
     assert status_of({**summary, "recommended": None}, 1) == 130
+
+
+APART = "import os, time; os.setsid(); open('apart', 'w').close(); time.sleep(60)"
+STARTER = f"""
+import os, subprocess, sys, time
+subprocess.Popen([sys.executable, "-c", {APART!r}])
+while not os.path.exists("apart"):
+    time.sleep(0.01)
+time.sleep(60)
+"""
+
+
+def started(folder):
+    """Processes of the command of this folder that run."""
+    return [pid for pid in marked("PWD", str(folder)) if running(pid)]
+
+
+def test_nothing_that_a_program_starts_survives_its_limit(tmp_path):
+    def apart():
+        return (tmp_path / "apart").exists() and len(started(tmp_path)) == 2
+
+    arguments = [sys.executable, "-c", STARTER], tmp_path, tmp_path / "log", 30.0, apart, {}
+    assert run_command(*arguments).status == "interrupted"
+    assert not started(tmp_path)
+
+
+def test_a_program_ends_with_the_killed_process_that_runs_it(tmp_path):
+    place = str(tmp_path)
+    code = (
+        "import sys; from pathlib import Path\n"
+        "from quintet.coupler.study.peers.process import run_command\n"
+        f"folder, command = Path({place!r}), [sys.executable, '-c', {STARTER!r}]\n"
+        "run_command(command, folder, folder / 'log', 60.0, lambda: False, {})"
+    )
+    process = subprocess.Popen([sys.executable, "-c", code])
+    try:
+        assert soon(lambda: (tmp_path / "apart").exists() and len(started(place)) == 2)
+    finally:
+        process.kill()
+        process.wait()
+    assert soon(lambda: not started(place))
+
+
+def soon(condition):
+    """Whether a condition holds within a time that is ample on a busy machine."""
+    limit = time.monotonic() + 30.0
+    while not condition() and time.monotonic() < limit:
+        time.sleep(0.02)
+    return condition()
 
 
 def test_the_page_of_the_study_has_the_program(tmp_path):
