@@ -6,7 +6,7 @@ from typing import Any
 
 from rich.table import Table
 
-from quintet.coupler.report.work_precision import three_digits
+from quintet.coupler.report.work_precision import COSTS, three_digits
 
 Row = dict[str, Any]
 
@@ -36,10 +36,20 @@ def beside_table(peer: Row, rows: Sequence[Row]) -> Table:
     for name, unit in units.items():
         errors = [row["errors"].get(name) for row in runs]
         table.add_row(f"error of {name} [{unit}]", *map(three_digits, errors))
-    table.add_row("CPU, time steps [s]", *(three_digits(row["cpu"]) for row in runs))
-    whole = [row.get("cpu_process") or None for row in runs]
-    table.add_row("CPU, whole process [s]", *map(three_digits, whole))
+    for words, costs in _costs(peer, rows).items():
+        table.add_row(f"{words} [s]", *map(three_digits, costs))
     return table
+
+
+def _costs(peer: Row, rows: Sequence[Row]) -> dict[str, list[float | None]]:
+    """Costs [s] of all runs by their kind; None where a kind was not measured."""
+    steps: list[float | None] = [row["cpu"] for row in rows]
+    costs = {COSTS["cpu"]: steps + len(peer["rows"]) * [None]}
+    if peer["cost"] != "process":
+        measured = costs.setdefault(COSTS[peer["cost"]], len(steps) * [None])
+        measured[len(steps) :] = [row["cpu"] for row in peer["rows"]]
+    whole = [row.get("cpu_process") or None for row in [*rows, *peer["rows"]]]
+    return costs | {COSTS["process"]: whole}
 
 
 def _state(row: Row) -> str:
@@ -54,9 +64,14 @@ def beside_words(peer: Row, rows: Sequence[Row]) -> list[str]:
     sentences = [
         f"{title_of(peer)}: {peer['settings']}. Inputs: {peer['source']}.",
     ]
+    if peer["cost"] != "cpu":
+        sentences.append(
+            f"the time of {peer['program']} is its {COSTS[peer['cost']]}; that of quintet "
+            f"{COSTS['cpu']}: compare orders of magnitude only"
+        )
     if loads:
         sentences.append(
             f"load of the machine as runs began: {min(loads):.1f} to {max(loads):.1f} on "
-            f"{os.cpu_count()} cores; wall times are not compared"
+            f"{os.cpu_count()} cores"
         )
     return sentences

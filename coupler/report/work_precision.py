@@ -19,6 +19,11 @@ COLOURS = {
     "spacing": "tab:blue",
     "model": "tab:purple",
 }
+COSTS = {  # kinds of time that stand for the cost of another program's run
+    "cpu": "CPU time, time steps",
+    "wall": "wall time, time steps",
+    "process": "CPU time, whole process",
+}
 PEERS = ("tab:red", "tab:brown", "tab:olive", "tab:cyan")  # other programs, in turn
 MARKERS = "sD^v"  # of their series
 RIGHT = 0.65  # of the logarithmic axis, from where labels stand left of their points
@@ -106,16 +111,17 @@ def _draw_peer(panel: Any, name: str, peer: Row, colour: str) -> None:
         rows = [row for row in done if row["series"] == words]
         costs, errors = [row["cpu"] for row in rows], [row["errors"][name] for row in rows]
         panel.plot(costs, errors, color=colour, linewidth=0.8, linestyle=":", zorder=1)
-        label = ", ".join(filter(None, (program, words)))
-        for row, cost, error in zip(rows, costs, errors, strict=True):
+        cost = "" if peer["cost"] == "cpu" else COSTS[peer["cost"]]
+        label = ", ".join(filter(None, (program, words, cost)))
+        for row, time, error in zip(rows, costs, errors, strict=True):
             style = {
                 "markersize": 5,
                 "color": colour,
                 "fillstyle": "full" if row["met"] else "none",
             }
-            panel.plot(cost, error, marker, label=label, **style)
+            panel.plot(time, error, marker, label=label, **style)
             place = {"xytext": (-5, -10), "ha": "right", "textcoords": "offset points"}
-            panel.annotate(row["label"], (cost, error), fontsize=7, color=colour, **place)
+            panel.annotate(row["label"], (time, error), fontsize=7, color=colour, **place)
 
 
 def _points(

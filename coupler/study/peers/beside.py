@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from quintet.coupler.report.work_precision import COSTS
 from quintet.coupler.study.peers.peer import Peer
 from quintet.interfaces.errors import SceneError
 
@@ -50,7 +51,10 @@ class Beside:
         row = peer.row(run, self.series, self.stop, self.keep)
         self.rows.setdefault(peer.name, []).append(row)
         cause = f": {row['cause']}" if row["cause"] else ""
-        print(f"{label}: {row['status']}, {row['cpu']:.3g} s of CPU time{cause}", flush=True)
+        print(
+            f"{label}: {row['status']}, {row['cpu']:.3g} s of {COSTS[peer.table.cost]}{cause}",
+            flush=True,
+        )
 
 
 def refuse_changes(options: Any) -> None:

@@ -91,6 +91,7 @@ class Peer:
             "settings": self.table.settings,
             "source": self.table.source,
             "inputs": [str(self.folder / file) for file in self.table.inputs.values()],
+            "cost": self.table.cost,
             "runs": len(self.runs),
             "rows": rows,
         }

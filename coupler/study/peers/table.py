@@ -44,7 +44,7 @@ Value = int | float | str
 
 @parameters
 class CpuTable:
-    """Where a program prints the time of its steps; each key is a regular expression.
+    """Where a program prints the time of its steps; keys but `wall` are regular expressions.
 
     Parameters
     ----------
@@ -54,11 +54,14 @@ class CpuTable:
         Share of `seconds` that is CPU time, where these are wall time.
     without
         Part of `seconds` that does not count, as the writing of files.
+    wall
+        Whether `seconds` are wall time whose share of CPU time is not known; tables say so.
     """
 
     seconds: str
     percent: str = ""
     without: str = ""
+    wall: bool = False
 
 
 @parameters
@@ -143,7 +146,8 @@ class PeerTable:
     inputs
         Place in the folder of the run, and the file beside this one that is copied there.
     cpu
-        Where it prints the time of its steps; without it all time of the process counts.
+        Where it prints the time of its steps; without it all CPU time of the process counts, and
+        tables say so.
     minutes : min
         After which a run is ended.
     run
@@ -166,6 +170,13 @@ class PeerTable:
     minutes: Positive = 10.0
     run: tuple[PeerRunTable, ...]
     curve: tuple[CurveTable, ...]
+
+    @property
+    def cost(self) -> str:
+        """Kind of time that stands for the cost of its runs: ``cpu``, ``wall`` or ``process``."""
+        if self.cpu is None:
+            return "process"
+        return "wall" if self.cpu.wall else "cpu"
 
     @property
     def commands(self) -> tuple[tuple[str, ...], ...]:
@@ -215,6 +226,8 @@ def _mistakes(table: PeerTable, folder: Path, expectations: list[Expectation]) -
     if table.cpu:
         names = ("seconds", "percent", "without")
         patterns |= {f"cpu.{name}": getattr(table.cpu, name) for name in names}
+        if table.cpu.wall and table.cpu.percent:
+            yield "cpu: with percent the time is CPU time; found wall = true too. Remove one."
     for key, pattern in patterns.items():
         yield from _pattern_mistakes(key, pattern)
     for file in table.inputs.values():

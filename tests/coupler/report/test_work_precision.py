@@ -69,7 +69,7 @@ def test_other_programs_have_marks_of_their_own_beside_the_front(drawn):
     runs = [row(f"{n} cells", 0.1 * n, {"end": 1.0 / n}, n > 10) for n in (10, 20, 40)]
     for run, series in zip(runs, ("", "", "fine"), strict=True):
         run["series"] = series
-    peers = [{"program": "Toy", "version": "7.1", "rows": runs}]
+    peers = [{"program": "Toy", "version": "7.1", "cost": "wall", "rows": runs}]
     figure = drawn(ladder, peers=peers)
     first, second = figure.axes
     points = [line for line in first.lines if line.get_marker() in ("s", "D")]
@@ -78,7 +78,7 @@ def test_other_programs_have_marks_of_their_own_beside_the_front(drawn):
     assert [line.get_fillstyle() for line in points] == ["none", "full", "full"]
     assert [line.get_marker() for line in points] == ["s", "s", "D"]
     words = [text.get_text() for text in figure.legends[0].get_texts()]
-    assert {"Toy 7.1", "Toy 7.1, fine"} <= set(words)
+    assert {"Toy 7.1, wall time, time steps", "Toy 7.1, fine, wall time, time steps"} <= set(words)
     (front,) = (line for line in first.lines if line.get_label() == "Pareto front")
     assert len(front.get_xdata()) == 3  # of the refinements alone
     assert not [line for line in second.lines if line.get_marker() == "s"]

@@ -13,6 +13,7 @@ from spring_scene import command, found_by, write
 from quintet.components.meshless_gas.exact.riemann import Side, solution
 from quintet.coupler.launch.processes import marked
 from quintet.coupler.measures.expectation import Expectation
+from quintet.coupler.report.peer_tables import beside_table, beside_words
 from quintet.coupler.scene.read import library, load
 from quintet.coupler.study.peers.beside import Beside
 from quintet.coupler.study.peers.outputs import cpu_in, curve_in, version_in
@@ -247,12 +248,46 @@ def test_a_scene_without_inputs_of_programs_says_where_they_belong(tmp_path, cap
         (('"curve.txt"', '"a/curve.txt"'), "file must be a name without folders"),
         (('"later"', '"late"'), "labels must differ"),
         (('"@python@", "toy.py", "@phase@"', ""), "a command must have a word"),
+        (
+            ("[cpu]", "[cpu]\npercent = '(.)'\nwall = true"),
+            "cpu: with percent the time is CPU time",
+        ),
         (("program =", "programme ="), "programme"),
     ],
 )
 def test_mistakes_of_a_table_are_told(tmp_path, capsys, change, sentence):
     said = refusal(capsys, write_peer(tmp_path, change), "--beside", "toy")
     assert sentence in said and "peers/toy/peer.toml: " in said
+
+
+@pytest.mark.parametrize(
+    ("change", "cost", "words"),
+    [
+        (("", ""), "cpu", "CPU time, time steps"),
+        (("[cpu]", "[cpu]\nwall = true"), "wall", "wall time, time steps"),
+        (("[cpu]\nseconds = 'seconds (\\S+)'", ""), "process", "CPU time, whole process"),
+    ],
+)
+def test_the_table_says_which_time_stands_for_the_cost(tmp_path, change, cost, words):
+    (peer,) = read_peers(["toy"], load(str(write_peer(tmp_path, change))))
+    state = {"label": "a", "status": "done", "met": True, "units": {}, "errors": {}, "load": 1.0}
+    run = {**state, "cpu": 0.5, "cpu_process": 0.75}
+    summary, rows = peer.summary([{**run, "version": "7.1"}]), [{**state, "cpu": 0.25}]
+    assert summary["cost"] == cost
+    table = beside_table(summary, rows)
+    heads, of_quintet, of_program = (list(column.cells) for column in table.columns)
+    costs = {h: (q, p) for h, q, p in zip(heads, of_quintet, of_program, strict=True) if "[s]" in h}
+    by_kind = {
+        "cpu": {"CPU time, time steps [s]": ("0.25", "0.5")},
+        "wall": {
+            "CPU time, time steps [s]": ("0.25", "-"),
+            "wall time, time steps [s]": ("-", "0.5"),
+        },
+        "process": {"CPU time, time steps [s]": ("0.25", "-")},
+    }
+    assert costs == {**by_kind[cost], "CPU time, whole process [s]": ("-", "0.75")}
+    said = [words in sentence for sentence in beside_words(summary, rows)]
+    assert any(said) == (cost != "cpu")
 
 
 LAMMPS = """LAMMPS (29 Aug 2024)
