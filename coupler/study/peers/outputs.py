@@ -23,17 +23,43 @@ def cpu_in(text: str, table: CpuTable) -> float:
     Raises
     ------
     SceneError
-        It printed no such time.
+        It printed no such time, or several and `repeats` does not say how they count.
     """
     times = _numbers(text, "seconds", table.seconds)
-    seconds = times[-1] - (times[0] if len(times) > 1 else 0.0)
-    if table.without:
-        seconds -= sum(_numbers(text, "without", table.without))
-    share = _numbers(text, "percent", table.percent)[-1] / 100.0 if table.percent else 1.0
-    return max(seconds, 0.0) * share
+    _check_repeats(times, table.repeats)
+    shares = [percent / 100.0 for percent in _numbers(text, "percent", table.percent)]
+    without = _numbers(text, "without", table.without)
+    if table.repeats == "clock":
+        seconds = max(times[-1] - times[0] - sum(without), 0.0)
+        return seconds * (shares[-1] if shares else 1.0)
+    for key, numbers in (("percent", shares), ("without", without)):
+        if numbers and len(numbers) != len(times):
+            raise SceneError(
+                f"cpu.{key}: it must be printed once for each of the seconds, {len(times)} times; "
+                f"found {len(numbers)}. Correct the expression."
+            )
+    parts = zip(times, without or len(times) * [0.0], shares or len(times) * [1.0], strict=True)
+    return sum(max(time - less, 0.0) * share for time, less, share in parts)
+
+
+def _check_repeats(times: list[float], repeats: str) -> None:
+    """Refuse several times that may add up or go on, and a clock that is printed once."""
+    if len(times) > 1 and not repeats:
+        raise SceneError(
+            f"cpu.seconds: the program must print one time; its output has {len(times)}. Say "
+            'repeats = "total" where they add up, "clock" where the last less the first counts.'
+        )
+    if len(times) < 2 and repeats == "clock":
+        raise SceneError(
+            'cpu.repeats = "clock": the program must print two times or more; its output has one. '
+            "Remove repeats, or correct seconds."
+        )
 
 
 def _numbers(text: str, key: str, pattern: str) -> list[float]:
+    """Numbers that an expression finds; none without an expression."""
+    if not pattern:
+        return []
     words = re.findall(pattern, text)
     if not words:
         raise SceneError(

@@ -44,24 +44,31 @@ Value = int | float | str
 
 @parameters
 class CpuTable:
-    """Where a program prints the time of its steps; keys but `wall` are regular expressions.
+    """Where a program prints the time of its steps.
+
+    `seconds`, `percent` and `without` are regular expressions.
 
     Parameters
     ----------
     seconds
-        Time, s; where it is printed often, as after each step, the last less the first.
+        Time, s.
     percent
         Share of `seconds` that is CPU time, where these are wall time.
     without
         Part of `seconds` that does not count, as the writing of files.
     wall
         Whether `seconds` are wall time whose share of CPU time is not known; tables say so.
+    repeats
+        Needed where `seconds` are printed more than once. ``"total"``: each is the time of a part,
+        and they add up, each by its own `percent` and less its own `without`. ``"clock"``: a clock
+        that goes on, of which the last less the first counts.
     """
 
     seconds: str
     percent: str = ""
     without: str = ""
     wall: bool = False
+    repeats: Literal["", "total", "clock"] = ""
 
 
 @parameters

@@ -48,6 +48,10 @@ with open("curve.txt", "w") as file:
 open("large", "w").write("left behind")
 {more}
 """
+CPU = """[cpu]
+seconds = 'seconds (\\S+)'
+repeats = "clock"
+"""
 TABLE = """
 program = "Toy"
 command = ["@python@", "toy.py", "@phase@"]
@@ -59,6 +63,7 @@ inputs = { "toy.py" = "toy.txt" }
 minutes = 1
 [cpu]
 seconds = 'seconds (\\S+)'
+repeats = "clock"
 [[curve]]
 component = "spring"
 field = "motion.position"
@@ -265,7 +270,7 @@ def test_mistakes_of_a_table_are_told(tmp_path, capsys, change, sentence):
     [
         (("", ""), "cpu", "CPU time, time steps"),
         (("[cpu]", "[cpu]\nwall = true"), "wall", "wall time, time steps"),
-        (("[cpu]\nseconds = 'seconds (\\S+)'", ""), "process", "CPU time, whole process"),
+        ((CPU, ""), "process", "CPU time, whole process"),
     ],
 )
 def test_the_table_says_which_time_stands_for_the_cost(tmp_path, change, cost, words):
@@ -304,10 +309,26 @@ def test_the_time_of_steps_is_read_from_what_programs_print():
     assert cpu_in(LAMMPS, table.cpu) == pytest.approx(0.8 * 2.0)
     assert version_in(LAMMPS, table.version) == "29 Aug 2024"
     steps = "".join(f"ExecutionTime = {time} s  ClockTime = 9 s\n" for time in (0.5, 0.75, 1.5))
-    assert cpu_in(steps, CpuTable(seconds=r"ExecutionTime = (\S+) s")) == 1.0
+    clock = CpuTable(seconds=r"ExecutionTime = (\S+) s", repeats="clock")
+    assert cpu_in(steps, clock) == 1.0
     with pytest.raises(SceneError, match=r"cpu.seconds: its group must be a number"):
         cpu_in("seconds: many", CpuTable(seconds=r"seconds: (\S+)"))
     assert version_in("nothing", r"Version (\S+)") == ""
+
+
+def test_several_times_count_as_the_table_says():
+    table = read_peer(*case("dam_break_front", "lammps"))[1]
+    twice = LAMMPS + LAMMPS.replace("of 2.5", "of 10.5").replace("80.0%", "50.0%")
+    total = {"without": table.cpu.without, "percent": table.cpu.percent, "repeats": "total"}
+    times = CpuTable(seconds=table.cpu.seconds, **total)
+    assert cpu_in(twice, times) == pytest.approx(0.8 * 2.0 + 0.5 * 10.0)
+    assert cpu_in(LAMMPS, times) == pytest.approx(0.8 * 2.0)
+    with pytest.raises(SceneError, match=r"output has 2. Say repeats = .total. where they add up"):
+        cpu_in(twice, table.cpu)
+    with pytest.raises(SceneError, match=r"repeats = .clock.: the program must print two times"):
+        cpu_in("t 1", CpuTable(seconds=r"t (\S+)", repeats="clock"))
+    with pytest.raises(SceneError, match=r"cpu.percent: .* the seconds, 2 times; found 1"):
+        cpu_in(twice.replace("50.0%", "half"), times)
 
 
 def test_curves_are_read_from_columns_among_other_lines(tmp_path):
