@@ -43,11 +43,11 @@ def beside_table(peer: Row, rows: Sequence[Row]) -> Table:
 
 def _costs(peer: Row, rows: Sequence[Row]) -> dict[str, list[float | None]]:
     """Costs [s] of all runs by their kind; None where a kind was not measured."""
-    steps: list[float | None] = [row["cpu"] for row in rows]
-    costs = {COSTS["cpu"]: steps + len(peer["rows"]) * [None]}
+    nothing: list[float | None] = len(rows) * [None]
+    costs = {COSTS["cpu"]: [row["cpu"] for row in rows] + len(peer["rows"]) * [None]}
     if peer["cost"] != "process":
-        measured = costs.setdefault(COSTS[peer["cost"]], len(steps) * [None])
-        measured[len(steps) :] = [row["cpu"] for row in peer["rows"]]
+        measured = costs.setdefault(COSTS[peer["cost"]], nothing)
+        measured[len(rows) :] = [row["cpu"] for row in peer["rows"]]
     whole = [row.get("cpu_process") or None for row in [*rows, *peer["rows"]]]
     return costs | {COSTS["process"]: whole}
 

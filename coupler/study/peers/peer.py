@@ -69,7 +69,7 @@ class Peer:
         stop : callable
             Whether to end early.
         keep : bool
-            Take over a completed run of the same inputs on the same machine.
+            Take over a completed run of the same inputs and programs on the same machine.
         """
         place = self.place(series, run)
         result = _earlier(place, self._inputs(run)) if keep else None
@@ -104,8 +104,17 @@ class Peer:
             for place, file in self.table.inputs.items()
         }
         commands = [[filled(word, values) for word in command] for command in self.table.commands]
-        timed = len(self.table.prepare)
-        return {"inputs": texts, "commands": commands, "timed": timed, "machine": machine()}
+        table = self.table
+        return {
+            "inputs": texts,
+            "commands": commands,
+            "programs": [_installed(command[0]) for command in commands],
+            "environment": table.environment,
+            "timed": len(table.prepare),
+            "cpu_table": asdict(table.cpu) if table.cpu else None,
+            "curves": [asdict(curve) for curve in table.curve],
+            "machine": machine(),
+        }
 
     def _carry_out(self, run: PeerRunTable, place: Path, stop: Callable[[], bool]) -> Row:
         """Run all commands in a temporary folder; return status, costs and inputs."""
@@ -180,6 +189,12 @@ class Peer:
         ]
 
 
+def _installed(word: str) -> Row:
+    """Path of a program and when its file changed, which tells one version from another."""
+    path = executable(word)
+    return {"path": path, "changed": os.stat(path).st_mtime_ns if path else None}
+
+
 def _costs(ended: Ended) -> Row:
     """Status and costs of the command that is timed."""
     return {
@@ -192,7 +207,7 @@ def _costs(ended: Ended) -> Row:
 
 
 def _earlier(place: Path, begun: Row) -> Row | None:
-    """Results of a completed run of the same inputs on this machine; None if there are none."""
+    """Results of a completed run of the same inputs and programs; None if there are none."""
     marker = read_marker(place) if place.is_dir() else None
     if marker is None or not (place / NAME).is_file():
         return None

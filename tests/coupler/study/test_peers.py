@@ -2,94 +2,23 @@
 
 import json
 import math
-import subprocess
 import sys
-import time
 
 import numpy as np
 import pytest
 from spring_scene import command, found_by, write
+from toy_peer import CPU, REFINEMENTS, write_peer
 
 from quintet.components.meshless_gas.exact.riemann import Side, solution
-from quintet.coupler.launch.processes import marked
 from quintet.coupler.measures.expectation import Expectation
 from quintet.coupler.report.peer_tables import beside_table, beside_words
 from quintet.coupler.scene.read import library, load
-from quintet.coupler.study.peers.beside import Beside
 from quintet.coupler.study.peers.outputs import cpu_in, curve_in, version_in
 from quintet.coupler.study.peers.peer import read_peers
-from quintet.coupler.study.peers.process import executable, run_command
+from quintet.coupler.study.peers.process import executable
 from quintet.coupler.study.peers.table import CpuTable, CurveTable, peers_of, read_peer
-from quintet.coupler.study.study import status_of
 from quintet.interfaces.errors import SceneError
-from quintet.interfaces.lines.process_status import running
 from quintet.scenarios.shock_tube.peers.openfoam import errors
-
-REFINEMENTS = """
-[[study]]
-label = "0.02"
-settings = { "components.spring.step" = 0.02 }
-size = "components.spring.step"
-[[study]]
-label = "0.01"
-settings = { "components.spring.step" = 0.01 }
-size = "components.spring.step"
-"""
-PROGRAM = """
-import math, sys, time
-phase = float(sys.argv[1])
-print("Version 7.1", flush=True)
-print("seconds 0.25", flush=True)
-print("seconds 0.75", flush=True)
-with open("curve.txt", "w") as file:
-    file.write("time position\\n")
-    for k in range(101):
-        file.write(f"{k / 100} {math.cos(10.0 * k / 100 + phase)}\\n")
-open("large", "w").write("left behind")
-{more}
-"""
-CPU = """[cpu]
-seconds = 'seconds (\\S+)'
-repeats = "clock"
-"""
-TABLE = """
-program = "Toy"
-command = ["@python@", "toy.py", "@phase@"]
-install = "pip install toy"
-version = 'Version (\\S+)'
-settings = "exact, but for its phase"
-source = "written for this test"
-inputs = { "toy.py" = "toy.txt" }
-minutes = 1
-[cpu]
-seconds = 'seconds (\\S+)'
-repeats = "clock"
-[[curve]]
-component = "spring"
-field = "motion.position"
-axis = 0
-file = "curve.txt"
-[[run]]
-label = "late"
-values = { phase = 0.01 }
-[[run]]
-label = "later"
-values = { phase = 0.02 }
-[[run]]
-label = "latest"
-values = { phase = 0.04 }
-"""
-
-
-def write_peer(folder, change=("", ""), more=""):
-    """A scene with refinements, and a program beside it."""
-    path = write(folder, REFINEMENTS)
-    place = folder / "peers" / "toy"
-    place.mkdir(parents=True)
-    (place / "toy.txt").write_text(PROGRAM.replace("{more}", more))
-    assert change[0] in TABLE
-    (place / "peer.toml").write_text(TABLE.replace(*change) if change[0] else TABLE)
-    return path
 
 
 def refusal(capsys, path, *arguments):
@@ -122,65 +51,6 @@ def test_a_program_is_measured_as_the_scene_is_and_runs_in_turns(tmp_path, capsy
     result = json.loads((tmp_path / "all" / "toy_late" / "peer.json").read_text())
     assert result["commands"] == [[sys.executable, "toy.py", "0.01"]]
     assert "curve.txt" in result["inputs"]["toy.py"]
-
-
-def test_a_study_whose_program_has_runs_left_was_interrupted(tmp_path):
-    path = write_peer(tmp_path)
-    beside = Beside(read_peers(["toy"], load(str(path))), tmp_path / "all", lambda: True, False)
-    beside.turn(0)
-    beside.rest(1)
-    summary = {"rows": [{"status": "done"}], "has_expectations": False} | beside.summary()
-    assert summary["peers"][0]["runs"] == 3 and summary["peers"][0]["rows"] == []
-    assert status_of({**summary, "recommended": None}, 1) == 130
-
-
-APART = "import os, time; os.setsid(); open('apart', 'w').close(); time.sleep(60)"
-STARTER = f"""
-import os, subprocess, sys, time
-subprocess.Popen([sys.executable, "-c", {APART!r}])
-while not os.path.exists("apart"):
-    time.sleep(0.01)
-time.sleep(60)
-"""
-
-
-def started(folder):
-    """Processes of the command of this folder that run."""
-    return [pid for pid in marked("PWD", str(folder)) if running(pid)]
-
-
-def test_nothing_that_a_program_starts_survives_its_limit(tmp_path):
-    def apart():
-        return (tmp_path / "apart").exists() and len(started(tmp_path)) == 2
-
-    arguments = [sys.executable, "-c", STARTER], tmp_path, tmp_path / "log", 30.0, apart, {}
-    assert run_command(*arguments).status == "interrupted"
-    assert not started(tmp_path)
-
-
-def test_a_program_ends_with_the_killed_process_that_runs_it(tmp_path):
-    place = str(tmp_path)
-    code = (
-        "import sys; from pathlib import Path\n"
-        "from quintet.coupler.study.peers.process import run_command\n"
-        f"folder, command = Path({place!r}), [sys.executable, '-c', {STARTER!r}]\n"
-        "run_command(command, folder, folder / 'log', 60.0, lambda: False, {})"
-    )
-    process = subprocess.Popen([sys.executable, "-c", code])
-    try:
-        assert soon(lambda: (tmp_path / "apart").exists() and len(started(place)) == 2)
-    finally:
-        process.kill()
-        process.wait()
-    assert soon(lambda: not started(place))
-
-
-def soon(condition):
-    """Whether a condition holds within a time that is ample on a busy machine."""
-    limit = time.monotonic() + 30.0
-    while not condition() and time.monotonic() < limit:
-        time.sleep(0.02)
-    return condition()
 
 
 def test_the_page_of_the_study_has_the_program(tmp_path):
