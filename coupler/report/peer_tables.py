@@ -1,6 +1,5 @@
 """Tables of other programs beside a study: errors and CPU times, run by run."""
 
-import os
 from collections.abc import Sequence
 from typing import Any
 
@@ -43,7 +42,7 @@ def beside_table(peer: Row, rows: Sequence[Row]) -> Table:
 
 def _costs(peer: Row, rows: Sequence[Row]) -> dict[str, list[float | None]]:
     """Costs [s] of all runs by their kind; None where a kind was not measured."""
-    nothing: list[float | None] = len(rows) * [None]
+    nothing: list[float | None] = [None for _ in rows]
     costs = {COSTS["cpu"]: [row["cpu"] for row in rows] + len(peer["rows"]) * [None]}
     if peer["cost"] != "process":
         measured = costs.setdefault(COSTS[peer["cost"]], nothing)
@@ -60,7 +59,8 @@ def _state(row: Row) -> str:
 
 def beside_words(peer: Row, rows: Sequence[Row]) -> list[str]:
     """What was compared, and on how quiet a machine."""
-    loads = [row["load"] for row in [*rows, *peer["rows"]] if "load" in row]
+    runs = [row for row in [*rows, *peer["rows"]] if "load" in row]
+    loads, cores = [row["load"] for row in runs], sorted({row["cores"] for row in runs})
     sentences = [
         f"{title_of(peer)}: {peer['settings']}. Inputs: {peer['source']}.",
     ]
@@ -72,6 +72,6 @@ def beside_words(peer: Row, rows: Sequence[Row]) -> list[str]:
     if loads:
         sentences.append(
             f"load of the machine as runs began: {min(loads):.1f} to {max(loads):.1f} on "
-            f"{os.cpu_count()} cores"
+            f"{' or '.join(map(str, cores))} cores"
         )
     return sentences

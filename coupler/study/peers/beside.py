@@ -1,13 +1,12 @@
 """Other programs run in turns with the refinements of a study, so that all meet the same load."""
 
-import os
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from quintet.coupler.report.work_precision import COSTS
-from quintet.coupler.study.peers.peer import Peer
+from quintet.coupler.study.peers.peer import Peer, load_of_machine
 from quintet.interfaces.errors import SceneError
 
 Row = dict[str, Any]
@@ -41,8 +40,8 @@ class Beside:
         return {"peers": peers} if peers else {}
 
     def load(self) -> Row:
-        """Load of the machine as a run begins, which is kept where programs are compared."""
-        return {"load": os.getloadavg()[0]} if self.peers else {}
+        """Load and cores of the machine as a run begins, kept where programs are compared."""
+        return load_of_machine() if self.peers else {}
 
     def _run(self, peer: Peer, number: int) -> None:
         run = peer.runs[number]

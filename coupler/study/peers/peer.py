@@ -127,7 +127,7 @@ class Peer:
             for file, text in begun["inputs"].items():
                 (fresh / file).parent.mkdir(parents=True, exist_ok=True)
                 (fresh / file).write_text(text)
-            about = {"load": os.getloadavg()[0], "date": date.today().isoformat()}
+            about = {**load_of_machine(), "date": date.today().isoformat()}
             result = about | self._command_all(begun, fresh, place, stop)
             for curve in self.table.curve:
                 if (fresh / curve.file).is_file():
@@ -176,7 +176,7 @@ class Peer:
                 "timing": {**timing, "components": {self.name: parts}},
             },
         )
-        more = ("cpu_process", "load", "date", "version", "cause")
+        more = ("cpu_process", "load", "cores", "date", "version", "cause")
         return row | {name: result.get(name, "") for name in more} | {"series": run.series}
 
     def _outcomes(self, place: Path) -> list[Outcome]:
@@ -187,6 +187,11 @@ class Peer:
             for curve in self.table.curve
             if curve.serves(expectation)
         ]
+
+
+def load_of_machine() -> Row:
+    """Load of this machine, and on how many cores."""
+    return {"load": os.getloadavg()[0], "cores": os.cpu_count()}
 
 
 def _installed(word: str) -> Row:

@@ -2,6 +2,7 @@
 
 import json
 import math
+import os
 import sys
 
 import numpy as np
@@ -39,7 +40,7 @@ def test_a_program_is_measured_as_the_scene_is_and_runs_in_turns(tmp_path, capsy
         assert row["errors"]["end"] == pytest.approx(abs(math.cos(10.0 + phase) - math.cos(10.0)))
         assert row["within"] == content["rows"][0]["within"] and not row["met"]
         assert row["cpu"] == 0.5 and 0.0 < row["cpu_process"] < row["wall"] + 0.1
-        assert row["load"] >= 0.0 and row["memory"] > 1e6
+        assert row["load"] >= 0.0 and row["cores"] == os.cpu_count() and row["memory"] > 1e6
     assert all(row["load"] >= 0.0 for row in content["rows"])
     said = capsys.readouterr().out
     places = [
@@ -145,7 +146,8 @@ def test_mistakes_of_a_table_are_told(tmp_path, capsys, change, sentence):
 )
 def test_the_table_says_which_time_stands_for_the_cost(tmp_path, change, cost, words):
     (peer,) = read_peers(["toy"], load(str(write_peer(tmp_path, change))))
-    state = {"label": "a", "status": "done", "met": True, "units": {}, "errors": {}, "load": 1.0}
+    state = {"label": "a", "status": "done", "met": True, "units": {}, "errors": {}}
+    state |= {"load": 1.0, "cores": 96}
     run = {**state, "cpu": 0.5, "cpu_process": 0.75}
     summary, rows = peer.summary([{**run, "version": "7.1"}]), [{**state, "cpu": 0.25}]
     assert summary["cost"] == cost
@@ -161,8 +163,9 @@ def test_the_table_says_which_time_stands_for_the_cost(tmp_path, change, cost, w
         "process": {"CPU time, time steps [s]": ("0.25", "-")},
     }
     assert costs == {**by_kind[cost], "CPU time, whole process [s]": ("-", "0.75")}
-    said = [words in sentence for sentence in beside_words(summary, rows)]
-    assert any(said) == (cost != "cpu")
+    sentences = beside_words(summary, rows)
+    assert any(words in sentence for sentence in sentences) == (cost != "cpu")
+    assert sentences[-1] == "load of the machine as runs began: 1.0 to 1.0 on 96 cores"
 
 
 LAMMPS = """LAMMPS (29 Aug 2024)
