@@ -100,8 +100,7 @@ def _run_all(
             print(f"{refinement.label}: {rows[-1]['status']}, {rows[-1]['wall']:.1f} s", flush=True)
             if rows[-1]["status"] == "interrupted" or stop():
                 break
-            beside.turn(number)
-        beside.rest(len(refinements))
+            beside.turn(number, len(refinements))
         folders = {refinement.label: folder / refinement.folder for refinement in refinements}
         summary = summarize(scene, refinements, rows, folders, options.error)
         summary |= beside.summary()

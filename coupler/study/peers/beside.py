@@ -23,16 +23,15 @@ class Beside:
     keep: bool
     rows: dict[str, list[Row]] = field(default_factory=dict)
 
-    def turn(self, number: int) -> None:
-        """Do the run of this number of each program that has so many."""
-        for peer in self.peers:
-            if number < len(peer.runs) and not self.stop():
-                self._run(peer, number)
+    def turn(self, number: int, refinements: int) -> None:
+        """Do the runs of every program that follow refinement `number` of so many.
 
-    def rest(self, first: int) -> None:
-        """Do the runs from this number on."""
-        for number in range(first, max((len(peer.runs) for peer in self.peers), default=0)):
-            self.turn(number)
+        The runs of a program are spread evenly over the refinements, be they more or fewer.
+        """
+        for peer in self.peers:
+            for run in range(len(peer.runs)):
+                if run * refinements // len(peer.runs) == number and not self.stop():
+                    self._run(peer, run)
 
     def summary(self) -> Row:
         """What ``study.json`` has of them: nothing where there is none."""

@@ -16,7 +16,7 @@ from pathlib import Path
 from quintet.coupler.launch.companion import Companion, once_gone
 from quintet.coupler.launch.processes import end_marked, environment
 
-ASKED = 0.02  # s between two looks at the process
+POLL = 0.02  # s between two polls of the process
 MARK = "QUINTET_PEER"  # in the environment of a command, and of all that it starts
 THREADS = 1  # of every program, so that CPU times compare
 DONE, FAILED, STALLED, INTERRUPTED = "done", "failed", "stalled", "interrupted"
@@ -99,7 +99,7 @@ def _wait(
             if not reason and (stop() or time.monotonic() > began + seconds):
                 reason = INTERRUPTED if stop() else STALLED
                 _kill(process.pid)
-            time.sleep(ASKED)
+            time.sleep(POLL)
             ended, code, used = os.wait4(process.pid, os.WNOHANG)
     except BaseException:
         _kill(process.pid)

@@ -20,11 +20,25 @@ from quintet.interfaces.lines.process_status import running
 def test_a_study_whose_program_has_runs_left_was_interrupted(tmp_path):
     path = write_peer(tmp_path)
     beside = Beside(read_peers(["toy"], load(str(path))), tmp_path / "all", lambda: True, False)
-    beside.turn(0)
-    beside.rest(1)
+    beside.turn(0, 1)
     summary = {"rows": [{"status": "done"}], "has_expectations": False} | beside.summary()
     assert summary["peers"][0]["runs"] == 3 and summary["peers"][0]["rows"] == []
     assert status_of({**summary, "recommended": None}, 1) == 130
+
+
+@pytest.mark.parametrize(
+    ("refinements", "turns"),
+    [(3, [["late"], ["later"], ["latest"]]), (2, [["late", "later"], ["latest"]]),
+     (5, [["late"], ["later"], [], ["latest"], []])],
+)  # fmt: skip
+def test_runs_of_a_program_are_spread_over_the_refinements(tmp_path, refinements, turns):
+    beside = Beside(read_peers(["toy"], load(str(write_peer(tmp_path)))), tmp_path, bool, False)
+    found = []
+    for number in range(refinements):
+        before = len(beside.rows.get("toy", ()))
+        beside.turn(number, refinements)
+        found.append([row["label"] for row in beside.rows["toy"][before:]])
+    assert found == turns
 
 
 APART = "import os, time; os.setsid(); open('apart', 'w').close(); time.sleep(60)"

@@ -44,7 +44,8 @@ def test_a_program_is_measured_as_the_scene_is_and_runs_in_turns(tmp_path, capsy
     assert all(row["load"] >= 0.0 for row in content["rows"])
     said = capsys.readouterr().out
     places = [
-        said.index(words) for words in ("0.02: done", "toy, late:", "0.01: done", "toy, later:")
+        said.index(words)
+        for words in ("0.02: done", "toy, late:", "toy, later:", "0.01: done", "toy, latest:")
     ]
     assert places == sorted(places) and "Toy 7.1: exact, but for its phase" in said
     left = {path.name for path in (tmp_path / "all" / "toy_late").iterdir()}
