@@ -30,7 +30,7 @@ class PartnerFaces:
         self.count = count
         # A step that a scene sets is to find the limit of stability.
         self.steps = params.steps_per_contact if params.fixed_step is None else 0
-        self.penalty = PenaltyContact(static, count, float(self.radius.max()), spheres=True)
+        self.penalty = PenaltyContact(static, count, self.radius, spheres=True)
         self.penalty.start(state.motion[rows, VELOCITY : VELOCITY + 3])
 
     def stable_step(self) -> float:

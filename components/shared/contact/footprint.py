@@ -20,7 +20,7 @@ from quintet.components.shared.numba_options import EXACT, LANEWISE
 @njit(**EXACT)
 def measure(
     place: Array, radii: Array, near: Near, corner: Whole, position: Array, across: Whole,
-    slack: float,
+    reach: float, slack: float,
 ) -> float:  # fmt: skip
     """Write gaps, normals, nodes and weights of particles near faces.
 
@@ -36,13 +36,15 @@ def measure(
         Of the nodes.
     across : (2,) int array
         Points across a particle, along both directions.
+    reach : float, m
+        Largest diameter: particles that are less deep below a face count as passed through it.
     slack : float, m
         By which particles and faces may still approach each other, before others are near.
 
     Returns
     -------
-    float, m
-        Depth of the deepest particle that has passed through a face.
+    float, 1
+        Largest depth of particles that have passed through a face, over their radius.
     """
     room, n, at, passed = np.empty((3, 3)), np.empty(3), np.empty(3), 0.0
     place_listed(near, corner, position)
@@ -50,11 +52,11 @@ def measure(
         radius, gap = radii[near.row[q]], math.inf
         for d in range(3):
             at[d] = place[near.row[q], d]
-        f, xi, eta = nearest(at, near, q, 2.0 * radius, slack, room)
+        f, xi, eta = nearest(at, near, q, reach, slack, room)
         if f >= 0:
             gap = gap_of(at, near.x[f], radius, room, n)
             if gap < -2.0 * radius:
-                passed, gap = max(passed, -gap), math.inf
+                passed, gap = max(passed, -gap / radius), math.inf
         if gap > radius:
             for c in range(near.weight.shape[1]):
                 near.weight[q, c] = 0.0

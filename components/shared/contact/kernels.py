@@ -70,7 +70,7 @@ class Sums(NamedTuple):
     points: float  # 1/s2, largest ω² of a particle on faces at rest
     nodes: float  # 1/s2, largest ω² of what holds a particle, were it at rest
     impact: float  # 1/s2, largest k/m of a particle
-    depth: float  # m, deepest penetration
+    depth: float  # 1, largest penetration over the radius of the particle
     spread: float  # 1, largest radius of a sphere's contact over the thickness behind the face
     limit: float  # s, in which one that is near comes half of the way to a radius below its face
 
@@ -134,7 +134,8 @@ def touch(
             dissipated += change_stiffness(loads.slip, loads.held, number, side)
         held, lost = friction(loads.slip, number, slid, n, side, surface.friction[face] * push)
         loads.held[number] = held
-        energy, dissipated, deepest = energy + stored + held, dissipated + lost, max(deepest, -gap)
+        energy, dissipated = energy + stored + held, dissipated + lost
+        deepest = max(deepest, -gap / radius)
         half_kick += apply(points, i, nodes, weight, q, n, push, side, dt, loads)
         if is_sphere:
             half_kick += twist(points, i, loads.slip, number, n, dt * side * (radius + gap))

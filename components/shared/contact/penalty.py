@@ -4,6 +4,7 @@ import math
 from dataclasses import astuple, dataclass, replace
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from quintet.components.shared.contact.footprint import measure
 from quintet.components.shared.contact.kernels import Loads, Points, Surface, furthest_from, touch
@@ -33,7 +34,7 @@ class Numbers:
     nodes: float = 0.0  # 1/s2, largest ω² of what holds a particle, were it at rest
     impact: float = 0.0  # 1/s2, largest k/m of a particle, as deep as it may come
     spread: float = 0.0  # 1, largest radius of a sphere's contact over the thickness of elements
-    deepest: float = 0.0  # m, of all penetrations so far
+    deepest: float = 0.0  # 1, largest penetration so far, over the radius of the particle
     work: float = 0.0  # J, done on the particles by the motion of the faces so far
     # J, that the kinetic energy lacks: velocities have none of the coming step's force yet, and at
     # the present time should have half of it.
@@ -56,18 +57,19 @@ class PenaltyContact:
     static : mapping of arrays
         Static fields of port `contact_faces`.
     particles : int
-    radius : float, m
-        Of the largest particle: they touch a face at their radius, half a spacing.
+    radius : float or (n,) float array, m
+        Of particles: they touch a face at their radius, half a spacing.
     spheres : bool
         Whether they are spheres, which touch by Hertz's law.
     """
 
     def __init__(
-        self, static: Fields, particles: int, radius: float, spheres: bool = False
+        self, static: Fields, particles: int, radius: ArrayLike, spheres: bool = False
     ) -> None:
         of = {key.partition(".")[2]: np.array(array) for key, array in static.items()}
         self.corner = np.ascontiguousarray(of["corner"], np.int64)
-        self.mass, self.radius = of["mass"], radius
+        self.mass = of["mass"]
+        self.radius, self.smallest = float(np.max(radius)), float(np.min(radius))  # m
         moduli = of["bulk"], of["shear"]
         modulus = plane_modulus(*moduli) if spheres else longitudinal_modulus(*moduli)
         layer = of["thickness"], of["friction"], of["stiffness"], of["mass"]
@@ -93,7 +95,7 @@ class PenaltyContact:
     def start(self, velocity: Array) -> None:
         """Bound the first step by velocities (n, 3) m/s of the start, as if all were at a face."""
         fastest = furthest_from(np.ascontiguousarray(velocity), np.zeros(3))
-        self.numbers.limit = 0.5 * self.radius / fastest if fastest > 0.0 else math.inf
+        self.numbers.limit = 0.5 * self.smallest / fastest if fastest > 0.0 else math.inf
 
     def take(self, fields: Fields) -> None:
         """Take places of nodes at a step's begin, velocities that work counts, active faces."""
@@ -120,7 +122,7 @@ class PenaltyContact:
         self.reaction, stiffness = np.zeros((nodes, 3)), np.zeros(nodes)
         surface = Surface(self.corner, *self.faces, self.position, moving)
         loads = Loads(self.reaction, stiffness, self.slip, self.held, self.kicked)
-        places = self.corner, self.position, self.across, self.slack
+        places = self.corner, self.position, self.across, 2.0 * self.radius, self.slack
         passed = measure(points.place, points.radius, near, *places)
         sums = touch(points, surface, near, last, dt, loads)
         self.before, numbers.last = self.position.copy(), dt
@@ -135,12 +137,13 @@ class PenaltyContact:
     def _list(self, points: Points, moving: Array, dt: float) -> tuple[Near, float]:
         """List the faces near particles, if they may have changed in the last step, of dt [s].
 
-        Returns also the time [s] in which others, a radius away at least, come half of the way to
-        a radius below a face. It does not depend on when faces were listed.
+        Returns also the time [s] in which others, their radius away at least, come half of the way
+        to a radius below a face; the smallest takes least. It does not depend on when faces were
+        listed.
         """
         mean = moving.mean(axis=0)
         spread = furthest_from(points.velocity, mean) + furthest_from(moving, mean)
-        apart = self.radius / spread if spread > 0.0 and self.active.any() else math.inf
+        apart = self.smallest / spread if spread > 0.0 and self.active.any() else math.inf
         if self.near is not None:
             self.slack -= dt * spread
             if self.slack >= 0.0:
@@ -225,11 +228,11 @@ class PenaltyContact:
     def warnings(self) -> dict[str, str]:
         """Warn of particles that passed through faces, or nearly did, and of eroded faces."""
         texts = {}
-        if self.numbers.deepest > self.radius:
+        if self.numbers.deepest > 1.0:
             texts["contact"] = (
                 "particles must stay outside of the faces that they touch; one went "
-                f"{self.numbers.deepest:.3g} m deep, and beyond {2.0 * self.radius:.3g} m it would "
-                "pass through. Raise the link's stiffness, or refine both sides."
+                f"{self.numbers.deepest:.3g} of its radii deep, and beyond 2 it would pass "
+                "through. Raise the link's stiffness, or refine both sides."
             )
         if self.numbers.spread > MOST_SPREAD:
             texts["indentation"] = (

@@ -15,7 +15,8 @@ FACES = np.array([[0, 1, 4, 3], [1, 2, 5, 4], [2, 6, 7, 5]])
 
 
 def contact_of(
-    particles, node=NODES, face=FACES, mass=1.0, friction=0.0, step=1e9, spheres=False, points=1.0
+    particles, node=NODES, face=FACES, mass=1.0, friction=0.0, step=1e9, spheres=False, points=1.0,
+    radius=RADIUS,
 ):  # fmt: skip
     count = len(face)
     static = {
@@ -31,7 +32,7 @@ def contact_of(
         "step": np.array([step]),
     }
     static = {f"contact_faces.{key}": array for key, array in static.items()}
-    return PenaltyContact(static, particles, RADIUS, spheres)
+    return PenaltyContact(static, particles, radius, spheres)
 
 
 def take(contact, node=NODES, active=None):

@@ -178,7 +178,7 @@ def test_deep_penetration_is_warned_of():
     contact.kick(points_at([(1.0, 1.0, 0.1)]), 1e-3)
     assert not contact.warnings()
     contact.kick(points_at([(1.0, 1.0, -0.2)]), 1e-3)
-    assert "one went 0.7 m deep, and beyond 1 m" in contact.warnings()["contact"]
+    assert "one went 1.4 of its radii deep, and beyond 2" in contact.warnings()["contact"]
 
 
 def _fall(side, step):
@@ -212,7 +212,7 @@ def test_a_particle_that_has_passed_through_a_face_is_warned_of():
     contact.kick(points_at([(1.0, 1.0, 0.7)]), 1e-3)
     assert not contact.warnings()
     contact.kick(points_at([(1.0, 1.0, -0.7)]), 1e-3)
-    assert "one went 1.2 m deep, and beyond 1 m" in contact.warnings()["contact"]
+    assert "one went 2.4 of its radii deep, and beyond 2" in contact.warnings()["contact"]
 
 
 def test_a_run_that_begins_from_another_keeps_history_and_counts_from_0():

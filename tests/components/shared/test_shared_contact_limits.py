@@ -1,0 +1,34 @@
+"""Contact with faces: what limits the step and warns, for particles of several radii."""
+
+import numpy as np
+from contact_points import contact_of, spheres_at, take
+
+SMALL, LARGE = 0.02, 0.5  # m
+
+
+def _mixture(height):
+    """Contact of a small sphere above a face with a large one far away; both fall at 1 m/s."""
+    radius = np.array([SMALL, LARGE])
+    contact = contact_of(2, mass=1e9, spheres=True, radius=radius)
+    fall = np.array([[0.0, 0.0, -1.0], [0.0, 0.0, -1.0]])
+    points = spheres_at([(1.0, 1.0, height), (1.0, 1.0, 9.0)], fall, 1e-9)
+    return contact, points._replace(radius=radius)
+
+
+def test_the_step_is_limited_by_the_smallest_sphere_of_a_mixture():
+    contact, points = _mixture(0.09)
+    contact.start(points.velocity)
+    assert contact.numbers.limit == 0.5 * SMALL
+    take(contact)
+    contact.kick(points, 1e-3)
+    assert contact.stable_step(1e9) == SMALL  # half of the way from a radius above to one below
+
+
+def test_a_small_sphere_of_a_mixture_that_passes_through_a_face_is_warned_of():
+    contact, points = _mixture(0.09)
+    take(contact)
+    contact.kick(points, 0.25)
+    points.place[:, 2] -= 0.25
+    take(contact)
+    contact.kick(points, 0.25)
+    assert "one went 9 of its radii deep, and beyond 2" in contact.warnings()["contact"]
