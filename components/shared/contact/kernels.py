@@ -71,7 +71,7 @@ class Sums(NamedTuple):
     nodes: float  # 1/s2, largest ω² of what holds a particle, were it at rest
     impact: float  # 1/s2, largest k/m of a particle
     depth: float  # 1, largest penetration over the radius of the particle
-    spread: float  # 1, largest radius of a sphere's contact over the thickness behind the face
+    spread: float  # 1, largest radius of a sphere's contact over the least edge of its element
     limit: float  # s, in which one that is near comes half of the way to a radius below its face
 
 
@@ -139,10 +139,24 @@ def touch(
         half_kick += apply(points, i, nodes, weight, q, n, push, side, dt, loads)
         if is_sphere:
             half_kick += twist(points, i, loads.slip, number, n, dt * side * (radius + gap))
-            spread = max(spread, math.sqrt(-radius * gap) / surface.thickness[face])
+            edge = min(surface.thickness[face], shortest_side(near.x[near.last[q]]))
+            spread = max(spread, math.sqrt(-radius * gap) / edge)
     held_by = of_what_holds(nodes, weight, surface.mass, loads.stiffness)
     of_points = max(of_points, impact)
     return Sums(energy, dissipated, half_kick, of_points, held_by, impact, deepest, spread, limit)
+
+
+@njit(**LANEWISE)
+def shortest_side(x):  # type: ignore[no-untyped-def]
+    """Shortest side [m] of a face (4, 3); the corner of a triangle that stands twice has none."""
+    shortest = math.inf
+    for c in range(4):
+        square = 0.0
+        for d in range(3):
+            square += (x[(c + 1) % 4, d] - x[c, d]) ** 2
+        if square > 0.0:
+            shortest = min(shortest, square)
+    return math.sqrt(shortest)
 
 
 @njit(**LANEWISE)

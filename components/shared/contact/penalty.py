@@ -20,7 +20,7 @@ from quintet.interfaces.component import Array, Fields
 
 PORT, ACTIVE, FORCE = "contact_faces", "contact_activity.active", "contact_load.force"
 POSITION, VELOCITY = f"{PORT}.position", f"{PORT}.velocity"
-MOST_SPREAD = 0.2  # radius of a contact over the thickness of elements
+MOST_SPREAD = 0.2  # radius of a contact over the shortest edge of elements
 HEAD = "contact/"  # prefix of the keys in saved states
 
 
@@ -33,7 +33,7 @@ class Numbers:
     points: float = 0.0  # 1/s2, largest ω² of a particle on faces at rest
     nodes: float = 0.0  # 1/s2, largest ω² of what holds a particle, were it at rest
     impact: float = 0.0  # 1/s2, largest k/m of a particle, as deep as it may come
-    spread: float = 0.0  # 1, largest radius of a sphere's contact over the thickness of elements
+    spread: float = 0.0  # 1, largest radius of a sphere's contact over the least edge of elements
     deepest: float = 0.0  # 1, largest penetration so far, over the radius of the particle
     work: float = 0.0  # J, done on the particles by the motion of the faces so far
     # J, that the kinetic energy lacks: velocities have none of the coming step's force yet, and at
@@ -236,9 +236,9 @@ class PenaltyContact:
             )
         if self.numbers.spread > MOST_SPREAD:
             texts["indentation"] = (
-                f"spheres must touch on a radius of at most {MOST_SPREAD:g} of the thickness of "
-                "an element, as elements that resolve a dent add it to that of Hertz's law; found "
-                f"{self.numbers.spread:.2g}. Take thicker elements, or particles of sph_solid."
+                f"spheres must touch on a radius of at most {MOST_SPREAD:g} of the thickness and "
+                "the sides of an element, as elements that resolve a dent add it to that of Hertz's "
+                f"law; found {self.numbers.spread:.2g}. Take larger elements, or particles of sph_solid."
             )
         if self.numbers.opened:
             texts["erosion"] = (

@@ -1,7 +1,8 @@
 """Contact with faces: what limits the step and warns, for particles of several radii."""
 
 import numpy as np
-from contact_points import contact_of, spheres_at, take
+import pytest
+from contact_points import FACES, NODES, RADIUS, contact_of, spheres_at, take
 
 SMALL, LARGE = 0.02, 0.5  # m
 
@@ -32,3 +33,15 @@ def test_a_small_sphere_of_a_mixture_that_passes_through_a_face_is_warned_of():
     take(contact)
     contact.kick(points, 0.25)
     assert "one went 9 of its radii deep, and beyond 2" in contact.warnings()["contact"]
+
+
+@pytest.mark.parametrize("triangles", [False, True])
+def test_a_contact_is_compared_with_the_shortest_edge_of_an_element(triangles):
+    node = NODES * (1.0, 0.25, 1.0)  # 0.5 m wide and 1 m thick
+    face = np.array([[0, 1, 3, 3], [1, 4, 3, 3]]) if triangles else FACES
+    contact = contact_of(1, node, face, spheres=True)
+    take(contact, node)
+    contact.kick(spheres_at([(1.0, 0.25, RADIUS - 0.03)]), 1e-3)  # √(R δ) is 0.122 m
+    assert contact.numbers.spread == pytest.approx(0.015**0.5 / 0.5)
+    text = contact.warnings()["indentation"]
+    assert "0.2 of the thickness and the sides of an element" in text and "found 0.24" in text

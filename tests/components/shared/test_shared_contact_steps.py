@@ -139,7 +139,7 @@ def test_wide_contact_of_a_sphere_is_warned_of():
         take(contact)
         contact.kick(spheres_at([(1.0, 1.0, RADIUS - depth)]), 1e-3)
         assert ("indentation" in contact.warnings()) == warns
-    assert "found 0.21. Take thicker elements" in contact.warnings()["indentation"]
+    assert "found 0.21. Take larger elements" in contact.warnings()["indentation"]
 
 
 def test_no_energy_appears_as_a_loaded_tangential_spring_changes_its_stiffness():
