@@ -77,6 +77,9 @@ class PenaltyContact:
         is_planar = bool((self.corner[:, 0] == self.corner[:, 3]).all())
         points = 1 if spheres else int(of["points"].max())
         self.across = np.array([points, 1 if is_planar else points])
+        # m: the faces of a particle's points lie within `reach`, the points `aside` from its foot.
+        aside = float(np.hypot(*(1.0 - 1.0 / self.across))) * self.radius
+        self.reach = math.hypot(2.0 * self.radius, aside) + aside
         self.safety, self.step_of_faces = float(of["safety"].min()), float(of["step"].min())
         nodes = len(self.mass)
         self.active = np.ones(len(self.corner))
@@ -156,7 +159,7 @@ class PenaltyContact:
             self.near = no_faces(several)
         else:
             cells = cells_of(np.ascontiguousarray(place[self.corner[faces]]))
-            reach = 2.0 * self.radius + self.slack
+            reach = self.reach + self.slack
             row, begin, face = list_near(points.place, reach, cells, faces)
             self.near = near_of(row, begin, face, several)
         self._let_go(points.identity[self.near.row])
@@ -237,8 +240,9 @@ class PenaltyContact:
         if self.numbers.spread > MOST_SPREAD:
             texts["indentation"] = (
                 f"spheres must touch on a radius of at most {MOST_SPREAD:g} of the thickness and "
-                "the sides of an element, as elements that resolve a dent add it to that of Hertz's "
-                f"law; found {self.numbers.spread:.2g}. Take larger elements, or particles of sph_solid."
+                "the sides of an element, as elements that resolve a dent add it to that of "
+                f"Hertz's law; found {self.numbers.spread:.2g}. Take larger elements, or "
+                "particles of sph_solid."
             )
         if self.numbers.opened:
             texts["erosion"] = (

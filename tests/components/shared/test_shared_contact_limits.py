@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from contact_points import FACES, NODES, RADIUS, contact_of, spheres_at, take
+from contact_points import FACES, NODES, RADIUS, contact_of, points_at, spheres_at, take
 
 SMALL, LARGE = 0.02, 0.5  # m
 
@@ -45,3 +45,27 @@ def test_a_contact_is_compared_with_the_shortest_edge_of_an_element(triangles):
     assert contact.numbers.spread == pytest.approx(0.015**0.5 / 0.5)
     text = contact.warnings()["indentation"]
     assert "0.2 of the thickness and the sides of an element" in text and "found 0.24" in text
+
+
+def test_particles_with_many_points_across_go_on_with_the_same_bits_after_a_restart():
+    x, y = np.meshgrid([0.0, 2.0, 4.0], [0.0, 2.0, 4.0])
+    node = np.stack([x.ravel(), y.ravel(), 0.0 * x.ravel()], axis=1)
+    face = np.array([[0, 1, 4, 3], [1, 2, 5, 4], [3, 4, 7, 6], [4, 5, 8, 7]])
+    # It comes from where the face across the corner is beyond three radii to where one of its
+    # points lies on that face, and has moved by less than a radius.
+    last = np.array([1.7, 1.7, 0.95])
+    move = 0.499 * np.array([0.3, 0.3, -0.95]) / np.sqrt(0.3**2 + 0.3**2 + 0.95**2)
+    saved = []
+    for restarts in (False, True):
+        contact = contact_of(1, node, face, points=4)
+        take(contact, node)
+        contact.kick(points_at([last - move], move[None]), 1.0)
+        if restarts:
+            state, contact = contact.save(), contact_of(1, node, face, points=4)
+            contact.load(state)
+            take(contact, node)
+        contact.kick(points_at([last], move[None]), 1.0)
+        assert contact.near.weight[0, contact.near.nodes[0] == 8].sum() > 0.0
+        saved.append(contact.save())
+    for key, array in saved[0].items():
+        np.testing.assert_array_equal(array, saved[1][key])
