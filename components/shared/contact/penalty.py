@@ -17,6 +17,7 @@ from quintet.components.shared.contact.search import Near, list_near, near_of, n
 from quintet.components.shared.contact.stable_step import highest_square
 from quintet.components.shared.geometry.face_projection import cells_of
 from quintet.interfaces.component import Array, Fields
+from quintet.interfaces.errors import SceneError
 
 PORT, ACTIVE, FORCE = "contact_faces", "contact_activity.active", "contact_load.force"
 POSITION, VELOCITY = f"{PORT}.position", f"{PORT}.velocity"
@@ -61,6 +62,11 @@ class PenaltyContact:
         Of particles: they touch a face at their radius, half a spacing.
     spheres : bool
         Whether they are spheres, which touch by Hertz's law.
+
+    Raises
+    ------
+    SceneError
+        Where spheres are to touch at several points.
     """
 
     def __init__(
@@ -75,7 +81,12 @@ class PenaltyContact:
         layer = of["thickness"], of["friction"], of["stiffness"], of["mass"]
         self.faces = modulus, tangential_modulus(*moduli), *layer
         is_planar = bool((self.corner[:, 0] == self.corner[:, 3]).all())
-        points = 1 if spheres else int(of["points"].max())
+        points = int(of["points"].max())
+        if spheres and points > 1:
+            raise SceneError(
+                f"points_across of a link contact must be 1 where spheres touch faces, as they "
+                f"touch at one point; it is {points}. Leave it out."
+            )
         self.across = np.array([points, 1 if is_planar else points])
         # m: the faces of a particle's points lie within `reach`, the points `aside` from its foot.
         aside = float(np.hypot(*(1.0 - 1.0 / self.across))) * self.radius

@@ -58,7 +58,7 @@ class ContactKeys:
     points_across : 1
         Points across a particle, along both sides, that bear its force on the faces below them.
         With 3 flat bodies press alike on faces that the spacing does not divide; it takes more
-        time. Spheres touch at one point.
+        time. It must be 1 for spheres.
     """
 
     between: Between

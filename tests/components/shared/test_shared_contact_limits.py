@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 from contact_points import FACES, NODES, RADIUS, contact_of, points_at, spheres_at, take
 
+from quintet.interfaces.errors import SceneError
+
 SMALL, LARGE = 0.02, 0.5  # m
 
 
@@ -69,3 +71,9 @@ def test_particles_with_many_points_across_go_on_with_the_same_bits_after_a_rest
         saved.append(contact.save())
     for key, array in saved[0].items():
         np.testing.assert_array_equal(array, saved[1][key])
+
+
+def test_spheres_with_several_points_across_are_refused():
+    rule = "points_across of a link contact must be 1 where spheres touch faces.* it is 3. Leave"
+    with pytest.raises(SceneError, match=rule):
+        contact_of(1, spheres=True, points=3.0)
