@@ -6,7 +6,6 @@ import numpy as np
 from numba import njit
 
 from quintet.components.shared.contact.search import (
-    ON,
     Near,
     gap_of,
     nearest,
@@ -15,6 +14,8 @@ from quintet.components.shared.contact.search import (
 )
 from quintet.components.shared.geometry.face_kernels import Array, Whole, place_on
 from quintet.components.shared.numba_options import EXACT, LANEWISE
+
+BESIDE = 0.1  # of a radius: by how much the foot of one of its points may miss the point
 
 
 @njit(**EXACT)
@@ -78,7 +79,7 @@ def hold(p, f, xi, eta, near, q, corner, position, across, radius, gap, room, n)
     theirs; else at its nearest point, at ξ and η.
     """
     nodes, weight = near.nodes, near.weight
-    if spread_out(p, f, near, q, corner, across, radius, room, n):
+    if spread_out(p, f, near, q, corner, across, radius, gap, room, n):
         gap = -radius
         for c in range(weight.shape[1]):
             for d in range(3):
@@ -107,16 +108,20 @@ def write_shares(corner, face, xi, eta, share, nodes, weight, q, at):  # type: i
 
 
 @njit(**LANEWISE)
-def spread_out(p, face, near, q, corner, across, radius, room, n):  # type: ignore[no-untyped-def]
+def spread_out(p, face, near, q, corner, across, radius, gap, room, n):  # type: ignore[no-untyped-def]
     """Hold a particle that lies on a face at the points across it.
 
-    The points lie in the plane of its normal, in rows along the face's first side and across it;
-    of edges only along it. Each has the nearest face of its own.
+    The points lie in the plane through its nearest point on the surface, normal to its direction
+    from there, in rows along the face's first side and across it; of edges only along it. Each has
+    the nearest face of its own. Where the surface bends by θ, a point at a distance s from the bend
+    misses its foot by s sin²θ in that plane: it counts as on the face up to `BESIDE`.
 
     Parameters
     ----------
     across : two int
         Points along both directions.
+    gap : float, m
+        Between the particle and its face.
 
     Returns
     -------
@@ -140,14 +145,14 @@ def spread_out(p, face, near, q, corner, across, radius, room, n):  # type: igno
         for j in range(across[1]):
             x, y = (2 * i + 1) / across[0] - 1.0, (2 * j + 1) / across[1] - 1.0
             for d in range(3):
-                point[d] = p[d] + radius * (x * tangent[d] + y * side[d])
+                point[d] = p[d] - (radius + gap) * n[d] + radius * (x * tangent[d] + y * side[d])
             f, xi, eta, _ = nearest_from(point, face, near, q, room)
             place_on(near.x[f], xi, eta, room)
             above, away = 0.0, 0.0
             for d in range(3):
                 above += (point[d] - room[0, d]) * n[d]
                 away += (point[d] - room[0, d]) ** 2
-            all_on &= away - above * above <= (ON * radius) ** 2
+            all_on &= away - above * above <= (BESIDE * radius) ** 2
             share = 1.0 / (across[0] * across[1])
             write_shares(corner, near.listed[f], xi, eta, share, near.nodes, near.weight, q, at)
             at += 4

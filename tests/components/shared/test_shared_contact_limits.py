@@ -77,3 +77,19 @@ def test_spheres_with_several_points_across_are_refused():
     rule = "points_across of a link contact must be 1 where spheres touch faces.* it is 3. Leave"
     with pytest.raises(SceneError, match=rule):
         contact_of(1, spheres=True, points=3.0)
+
+
+@pytest.mark.parametrize("angle", [0.0, 2e-3, 0.1, 0.3])
+@pytest.mark.parametrize("sign", [-1.0, 1.0])
+def test_a_particle_is_spread_over_faces_of_a_surface_that_bends(angle, sign):
+    node = NODES.copy()
+    node[[2, 5]] = [[2.0 + 2.0 * np.cos(angle), y, sign * 2.0 * np.sin(angle)] for y in (0, 2)]
+    contact, points = contact_of(1, node, FACES[:2], points=3), points_at([(1.7, 1.0, 0.4)])
+    take(contact, node)
+    contact.kick(points, 1.0)
+    share = (1.7 + 1 / 3 - 2.0) / 2.0 / 3.0  # of the right third, on the second face
+    found = contact.near.weight[0, np.isin(contact.near.nodes[0], (2, 5))].sum()
+    assert found == pytest.approx(share * np.cos(angle))
+    pushed = contact.near.gap[0]  # of a mean of the surface, which its outer third tilts
+    tilt = sign * 2.0 * np.sin(angle) * found
+    assert pushed == pytest.approx(-0.1 - tilt, abs=1e-12)
