@@ -11,7 +11,9 @@ def highest_square(alone: tuple[float, float], added: tuple[float, float]) -> fl
     of the masses at the interface is put to contact. A layer of elements, or of particles, that has
     half of its mass there keeps 1 - s of that half, and its ω² grows to Λ/2 (1 + 1/(1-s)); that of
     contact is Σ c/s over both sides. The shares for which all three are equal give the bound. It is
-    exact for a single layer; with Λ/(1-s), of a layer with all of its mass at the interface, it
+    exact for a single layer that is touched on one side. One that is touched on both has all of its
+    mass at the interface, and its ω may exceed the bound by 8 %, which the link's default `safety`
+    of 0.9 covers; with Λ/(1-s), of a layer with all of its mass at the interface, it
     would be Λ + Σ c.
 
     Parameters
