@@ -28,7 +28,8 @@ class PartnerFaces:
         of_materials = np.array([moduli(material) for material in params.materials.values()])
         self.modulus, self.tangential = of_materials[model.material[rows]].T.copy()
         self.count = count
-        # A step that a scene sets is to find the limit of stability.
+        # With fixed_step, impacts need not be resolved: the scene looks for the limit of stability,
+        # which `penalty.stable_step` still keeps to.
         self.steps = params.steps_per_contact if params.fixed_step is None else 0
         self.penalty = PenaltyContact(static, count, self.radius, spheres=True)
         self.penalty.start(state.motion[rows, VELOCITY : VELOCITY + 3])

@@ -64,17 +64,22 @@ def sphere_law(radius, mass, inverse_moment, modulus, shear, friction, depth, cl
         Normal force, and its energy.
     side : float, N/m
         Stiffness along the face.
-    most : float, N/m
+    largest_stiffness : float, N/m
         Largest stiffness along the normal, as deep as the particle may come.
-    aside : float, 1/s2
+    tangential_square : float, 1/s2
         ω² of a sphere that sticks and turns; 0 without friction.
     """
     stiff, ratio = hertz_stiffness(modulus, radius, depth), 4.0 * shear / modulus
-    push, come = 2.0 / 3.0 * stiff * depth, deepest_overlap(depth, closing, modulus, radius, mass)
-    most, aside = hertz_stiffness(modulus, radius, come), 0.0
+    push, largest_overlap = (
+        2.0 / 3.0 * stiff * depth,
+        deepest_overlap(depth, closing, modulus, radius, mass),
+    )
+    largest_stiffness, tangential_square = hertz_stiffness(modulus, radius, largest_overlap), 0.0
     if friction > 0.0:
-        aside = ratio * most * (1.0 / mass + radius * radius * inverse_moment)
-    return push, 0.4 * push * depth, ratio * stiff, most, aside
+        tangential_square = (
+            ratio * largest_stiffness * (1.0 / mass + radius * radius * inverse_moment)
+        )
+    return push, 0.4 * push * depth, ratio * stiff, largest_stiffness, tangential_square
 
 
 @njit(**LANEWISE)

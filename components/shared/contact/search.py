@@ -38,14 +38,14 @@ class Near(NamedTuple):
     face: Whole
     listed: Whole  # (u,) faces that are near any particle, rising
     last: Whole  # (r,) which of the listed ones was the nearest; -1 at first
-    sure: Array  # (r,) m, slack at which another one may be nearer
+    recheck_slack: Array  # (r,) m, slack at which another one may be nearer
     # Written in every step.
     x: Array  # (u, 4, 3) m, corners of the listed faces
     lowest: Array  # (u, 3) m, of the boxes around them
     highest: Array  # (u, 3) m
     nodes: Whole  # (r, 4 or more) nodes that hold each particle
     weight: Array  # (r, 4 or more) 1, their shares, all 0 of a particle that is not near
-    gap: Array  # (r,) m, ∞ of such a one
+    gap: Array  # (r,) m, ∞ where no face is near
     normal: Array  # (r, 3) 1, from the face to the particle
 
 
@@ -65,7 +65,7 @@ def near_of(row: Whole, begin: Whole, face: Whole, several: int) -> Near:
         face=face,
         listed=listed,
         last=np.full(rows, -1),
-        sure=np.zeros(rows),
+        recheck_slack=np.zeros(rows),
         x=np.empty((count, 4, 3)),
         lowest=np.empty((count, 3)),
         highest=np.empty((count, 3)),
@@ -159,7 +159,7 @@ def nearest(p, near, q, reach, slack, room):  # type: ignore[no-untyped-def]
     `room` is left as `foot_within` leaves it.
     """
     face, least = near.last[q], math.inf
-    if face >= 0 and slack > near.sure[q]:
+    if face >= 0 and slack > near.recheck_slack[q]:
         xi, eta, d2 = foot_within(p, near.x[face], SETTLED, room)
     else:
         if face < 0:
@@ -172,7 +172,7 @@ def nearest(p, near, q, reach, slack, room):  # type: ignore[no-untyped-def]
         for at in range(near.begin[q], near.begin[q + 1]):
             if near.face[at] != face:
                 least = min(least, away_from(p, near, near.face[at]))
-        near.sure[q] = slack - SURE * (math.sqrt(least) - math.sqrt(d2))
+        near.recheck_slack[q] = slack - SURE * (math.sqrt(least) - math.sqrt(d2))
         place_on(near.x[face], xi, eta, room)
     if d2 >= reach * reach:
         face = -1

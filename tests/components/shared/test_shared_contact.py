@@ -83,11 +83,11 @@ def test_the_nearest_face_is_the_same_whether_or_not_the_others_are_looked_at():
             points = points_at(place, velocity.copy())
             take(contact, node)
             if contact is looked and contact.near is not None:
-                contact.near.sure[:] = np.inf
+                contact.near.recheck_slack[:] = np.inf
             contact.kick(points, 0.05)
             reactions.append(contact.reaction)
         np.testing.assert_array_equal(*reactions)
-        skipped += int((quick.near.sure < quick.slack).sum())
+        skipped += int((quick.near.recheck_slack < quick.slack).sum())
         place = place + 0.05 * velocity
     assert skipped > 500
 
@@ -117,7 +117,7 @@ def test_of_two_faces_at_the_same_distance_the_first_is_touched():
         contact = contact_of(1, friction=0.3)
         take(contact)
         contact.kick(points_at([(1.9, 1.0, 0.3)]), 1e-3)
-        contact.near.last[:], contact.near.sure[:] = first, np.inf
+        contact.near.last[:], contact.near.recheck_slack[:] = first, np.inf
         contact.kick(points_at(place, np.ones((1, 3))), 1e-3)
         kept.append([contact.near.last.copy(), contact.reaction.copy(), contact.slip.copy()])
     assert kept[0][0] == 0
