@@ -8,10 +8,10 @@ from quintet.components.shared.geometry.bounds import Bounds
 from quintet.components.shared.geometry.lattice import fill_box
 from quintet.components.sph_fluid.boundary.parts import standing
 from quintet.components.sph_fluid.boundary.walls import wall_velocity
-from quintet.components.sph_fluid.laws import TAIT
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.setup.geometry import cells, levels
 from quintet.components.sph_fluid.setup.initial import InitialFields
+from quintet.components.sph_fluid.setup.tait import TAIT
 from quintet.components.sph_fluid.state import Array, State
 
 OFFSETS = np.array([0.0, 0.5 * (math.sqrt(5.0) - 1.0), math.sqrt(2.0) - 1.0])  # 1, per row in y, z

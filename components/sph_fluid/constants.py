@@ -4,7 +4,6 @@ import math
 
 from quintet.components.shared.smoothing.smoothing import smoothing
 from quintet.components.sph_fluid.laws import (
-    TAIT,
     Constants,
     ContactPotential,
     DensityDiffusion,
@@ -15,6 +14,7 @@ from quintet.components.sph_fluid.laws import (
     WallRepulsion,
 )
 from quintet.components.sph_fluid.params import SphFluidParams
+from quintet.components.sph_fluid.setup.tait import TAIT
 
 # All walls but dynamic ones press as still water does, and would let fast particles by. Within
 # NEAREST spacings, which a particle half a spacing off the face does not reach, their particles

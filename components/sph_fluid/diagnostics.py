@@ -5,12 +5,13 @@ import math
 import numpy as np
 
 from quintet.components.shared.finite_items import require_finite_items
-from quintet.components.sph_fluid.laws import TAIT, Constants
+from quintet.components.sph_fluid.laws import Constants
 from quintet.components.sph_fluid.mass_balance.losses import balance
 from quintet.components.sph_fluid.mass_balance.sums import without_buffers
 from quintet.components.sph_fluid.open_boundaries.crossings import potential_of_crossings
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.ranks.method import Ranks
+from quintet.components.sph_fluid.setup.tait import TAIT
 from quintet.components.sph_fluid.state import Array, State, Whole
 from quintet.interfaces.component import Fields, Totals
 from quintet.interfaces.errors import SceneError, StepError

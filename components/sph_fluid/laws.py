@@ -12,8 +12,6 @@ from numba import njit
 from quintet.components.shared.smoothing.cubic_spline import ONE, ZERO
 from quintet.components.shared.smoothing.smoothing import Smoothing, kernel
 
-TAIT = 7  # γ, exponent of the equation of state
-
 On = bool | None
 
 

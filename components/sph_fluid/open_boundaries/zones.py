@@ -7,10 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quintet.components.shared.geometry.lattice import cells_along
-from quintet.components.sph_fluid.laws import TAIT
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.setup.geometry import Face
 from quintet.components.sph_fluid.setup.inflow_outflow import Inflow, buffer_layers
+from quintet.components.sph_fluid.setup.tait import TAIT
 from quintet.components.sph_fluid.state import Array
 
 

@@ -4,10 +4,10 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from quintet.components.shared.geometry.bounds import Bounds
-from quintet.components.sph_fluid.laws import TAIT
 from quintet.components.sph_fluid.setup.geometry import Face
 from quintet.components.sph_fluid.setup.inflow_outflow import Outflow, buffer_layers
 from quintet.components.sph_fluid.setup.initial import COMPRESSED
+from quintet.components.sph_fluid.setup.tait import TAIT
 
 if TYPE_CHECKING:
     from quintet.components.sph_fluid.setup.mesh_surfaces import Surface
