@@ -128,8 +128,9 @@ def test_the_coupler_of_several_processes_imports_no_solver(tmp_path):
 @pytest.fixture(scope="module")
 def checked(tmp_path_factory):
     """Check all scenes one by one; return the status of each, and what was first imported there."""
-    # Last the one that needs scipy, for trimesh, which reads its hull.
-    names = sorted(library(), key=lambda name: (name == "floating_hull", name))
+    # Last those that need scipy: for trimesh, which reads a hull, and pint, which knows the units
+    # in the heads of a table.
+    names = sorted(library(), key=lambda name: (name in ("floating_hull", "spheric_10"), name))
     return fresh(tmp_path_factory.mktemp("checked"), CHECKS, *names)[0]
 
 
