@@ -146,11 +146,11 @@ def _check_way(
 ) -> None:
     """No obstacle that stands is in the way, and a face does not reach the opposite one."""
     moved = [other.number("obstacles") for other in boundary.pistons]
-    own, little = piston.number("obstacles"), ROUNDING * spacing
+    obstacle, little = piston.number("obstacles"), ROUNDING * spacing
     for number, box in enumerate(boundary.solids):
         low, high = np.array(box) if number not in moved else np.full((2, 3), np.nan)
         shared = np.minimum(swept[:, 1], high) - np.maximum(swept[:, 0], low)
-        at_start = np.array(boundary.solids[own]) if own >= 0 else np.full((2, 3), np.nan)
+        at_start = np.array(boundary.solids[obstacle]) if obstacle >= 0 else np.full((2, 3), np.nan)
         overlap = np.minimum(at_start[1], high) - np.maximum(at_start[0], low)
         if (shared > little).all(axis=1).any() and not (overlap > little).all():
             raise ValueError(
