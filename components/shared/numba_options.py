@@ -10,7 +10,7 @@ compilation.announce()
 # As written: for loops that must notice numbers that are not finite, whose sums must keep their
 # order, or that compute each row by itself. Such a loop is made of vectors, and of single rows at
 # its end, which `FAST` may round otherwise: bits would depend on where a row stands. The option is
-# stated because numba otherwise takes that of whichever function calls first, and a function's bits
+# stated because numba otherwise takes that of the first caller, and a function's bits
 # would depend on what was compiled before it.
 EXACT = {"error_model": "numpy", "cache": True, "nogil": True, "fastmath": False}
 # Sums may be reordered into vectors, and every number is taken to be finite.

@@ -66,7 +66,7 @@ Nothing rubs there, nothing passes, and the plane takes the momentum across it
 (`boundary/symmetry.py`). Surfaces stay before it, gravity lies in it, and films in narrow gaps do
 not know it.
 
-Along an axis in `boundary.periodic` the tank repeats: what is near one face acts from behind the
+Along an axis in `boundary.periodic` the tank repeats: particles near one face act from behind the
 opposite one too, and fluid that leaves there enters here (`open_boundaries/periodic.py`). Gravity
 along x or y then drives the flow.
 

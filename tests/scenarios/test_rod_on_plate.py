@@ -29,8 +29,8 @@ CALM = {"viscosity_linear": 0.0, "viscosity_quadratic": 0.0}
 @pytest.fixture(scope="module")
 def coupled(run_scene: Run) -> Curve:
     """Mean velocity of the rod in the scene."""
-    found = run_scene("rod_on_plate", "--transport", "memory", "--set", "output.totals=0")
-    with Recording(found["folder"]) as recording:
+    results = run_scene("rod_on_plate", "--transport", "memory", "--set", "output.totals=0")
+    with Recording(results["folder"]) as recording:
         velocity = recording.history("rod", "bodies.velocity", 0)[:, 2]
         return recording.times("rod") - CLOSED, velocity
 
@@ -53,7 +53,7 @@ def _in_elements(folder: Path) -> Curve:
     low, high = (-size, -size, -size), (2.0 * size, 2.0 * size, 2.0 * LONG)
     whole = Fixed(lowest=(-size, -size, -2.0 * LONG), highest=high, directions=("x", "y"))
     rod = Elements(lowest=(*low[:2], -0.1 * size), highest=high)
-    made = FePlate(
+    column = FePlate(
         FePlateParams(
             parts=(part,), fixed=(whole,), integration="reduced", **CALM,
             gauges=Gauges(element_set_gauges=(rod,)),
@@ -61,10 +61,10 @@ def _in_elements(folder: Path) -> Curve:
     )  # fmt: skip
     key, times, velocity = "element_set_gauge.velocity", [0.0], [-SPEED]
     while times[-1] < TOUCHING[-1]:
-        dt = made.stable_dt()
-        made.step(dt)
+        dt = column.stable_dt()
+        column.step(dt)
         times.append(times[-1] + dt)
-        velocity.append(made.give(frozenset((key,)))[key][0, 2])
+        velocity.append(column.give(frozenset((key,)))[key][0, 2])
     return np.array(times), np.array(velocity)
 
 
@@ -80,15 +80,15 @@ def _in_particles(_: Path) -> Curve:
         SymmetryPlane(axis="x", position=0.0, side="+"),
         SymmetryPlane(axis="x", position=wide, side="-"),
     )
-    made = SphSolid(
+    column = SphSolid(
         SphSolidParams(spacing=LONG / LAYERS, dimensions=2, bodies=(rod, plate), symmetry=sides)
     )
     times, velocity = [0.0], [-SPEED]
     while times[-1] - CLOSED < TOUCHING[-1]:
-        dt = made.stable_dt()
-        made.step(dt)
+        dt = column.stable_dt()
+        column.step(dt)
         times.append(times[-1] + dt)
-        velocity.append(made.give(frozenset((key,)))[key][0, 2])
+        velocity.append(column.give(frozenset((key,)))[key][0, 2])
     return np.array(times) - CLOSED, np.array(velocity)
 
 

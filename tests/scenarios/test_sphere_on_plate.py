@@ -54,20 +54,20 @@ def test_the_scene_expects_what_zener_has() -> None:
 
 
 def test_a_sphere_gives_a_plate_as_much_as_zener_has(run_scene: Run) -> None:
-    found = run_scene("sphere_on_plate", "--transport", "memory")
-    assert all(one["met"] for one in found["expect"]), found["expect"]
-    (link,) = found["ledger"]["links"]
+    results = run_scene("sphere_on_plate", "--transport", "memory")
+    assert all(row["met"] for row in results["expect"]), results["expect"]
+    (link,) = results["ledger"]["links"]
     assert link["momentum_residual"] <= 1e-12
-    assert found["energy_gained"] < 0.01
-    assert found["warnings"] == []
+    assert results["energy_gained"] < 0.01
+    assert results["warnings"] == []
 
 
 def test_a_faster_sphere_leaves_more_in_the_plate(run_scene: Run) -> None:
     speed, rebound = 0.5, zener(0.5)[0]
-    found = run_scene(
+    results = run_scene(
         "sphere_on_plate", "--transport", "memory", "--set", "end=7e-5",
         "--set", f"components.sphere.bodies.0.velocity=[0.0, 0.0, {-speed}]",
         "--set", f"components.sphere.impact_speed={speed}", "--set", "expect.0.begin=7e-5",
         "--set", "expect.2.begin=6e-5", "--set", "expect.2.end=7e-5",
     )  # fmt: skip
-    assert found["by_name"]["sphere.rebound"]["value"] == pytest.approx(rebound, rel=0.02)
+    assert results["by_name"]["sphere.rebound"]["value"] == pytest.approx(rebound, rel=0.02)

@@ -62,7 +62,7 @@ class Loads(NamedTuple):
 
 
 class Sums(NamedTuple):
-    """Sums over contacts, and extremes of what is near."""
+    """Sums over contacts, and extreme values of particles near faces."""
 
     energy: float  # J, held by the springs
     dissipated: float  # J, by friction in this step

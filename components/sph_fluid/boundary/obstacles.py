@@ -127,7 +127,7 @@ def _wet(box: Bounds, params: SphFluidParams) -> NDArray[np.bool_]:
     tolerance = ROUNDING * params.spacing
     lower = np.array(box[0]) > np.array(params.boundary.tank[0]) + tolerance
     upper = np.array(box[1]) < np.array(params.boundary.tank[1]) - tolerance
-    if box in params.boundary.moved_solids:  # what is beyond a wall now may come into the tank
+    if box in params.boundary.moved_solids:  # parts beyond a wall may enter the tank later
         lower |= np.array(box[0]) < np.array(params.boundary.tank[0]) - tolerance
         upper |= np.array(box[1]) > np.array(params.boundary.tank[1]) + tolerance
     return _in_space(np.stack([lower, upper]) | _named(params.boundary.open_faces), params)

@@ -1,8 +1,8 @@
-"""Parts of the boundary that move by themselves; imported only by a scene that asks.
+"""Parts of the boundary that move by themselves; imported only by a scene that has some.
 
-Their particles are surface samples, after those that links bring: they stand in the state as these
-do, are listed and shared among ranks as these are, and the fluid's force on them is summed as on
-these. They are placed as samples are: where they are in the middle of a step, with the mean
+Their particles are surface samples, listed after the samples of links. The state, the neighbour
+lists and the ranks treat them as these, and the fluid's force on them is summed in the same way.
+They are placed as samples are: where they are in the middle of a step, with the mean
 velocity over it, so that displacements add up. The force of a step on them times their velocity is
 the work that the fluid does on them.
 """

@@ -4,7 +4,6 @@ Rows are the points of a rectangular grid, in any order; between them fields are
 axis, beyond them as on its edge. Along an axis that the table has no column of they are constant.
 """
 
-import csv
 import itertools
 from dataclasses import dataclass
 from functools import lru_cache
@@ -12,6 +11,8 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
+
+from quintet.components.sph_fluid.setup.csv_table import read_csv
 
 Array = NDArray[np.float64]
 AXES = ("x", "y", "z")  # m
@@ -56,16 +57,7 @@ class FieldTable:
 def read_table(file: str) -> FieldTable:
     """Read a table; its first line names the columns."""
     name = Path(file).name
-    try:
-        with open(file, newline="", encoding="utf-8") as text:
-            head, *rows = [row for row in csv.reader(text) if row]
-        columns = [cell.strip() for cell in head]
-        numbers = np.array([[float(number) for number in row] for row in rows])
-    except (OSError, ValueError, csv.Error) as error:
-        raise ValueError(
-            f"table {name} must have a line with the names of its columns, then lines of numbers; "
-            f"reading it found {error}. Correct it."
-        ) from error
+    columns, numbers = read_csv(file, "table")
     known = (*AXES, *FIELDS)
     axes = [column for column in columns if column in AXES]
     fields = [column for column in columns if column in FIELDS]
@@ -74,7 +66,7 @@ def read_table(file: str) -> FieldTable:
         raise ValueError(
             f"table {name} must have columns of finite numbers, each once, one of {', '.join(AXES)}"
             f" or more and one of {', '.join(FIELDS)} or more; found {', '.join(columns)[:80]} and "
-            f"{len(rows)} rows. Correct it."
+            f"{len(numbers)} rows. Correct it."
         )
     column = dict(zip(columns, numbers.T, strict=True))
     places, at = {}, []
@@ -83,14 +75,14 @@ def read_table(file: str) -> FieldTable:
         at.append(row.reshape(-1))
     shape = tuple(len(axis) for axis in places.values())
     number = np.ravel_multi_index(tuple(at), shape)
-    if len(rows) != np.prod(shape) or len(np.unique(number)) != len(rows):
+    if len(numbers) != np.prod(shape) or len(np.unique(number)) != len(numbers):
         raise ValueError(
             f"table {name} must have a row for each point of a rectangular grid, here "
-            f"{' x '.join(map(str, shape))}; found {len(rows)} rows. Complete it."
+            f"{' x '.join(map(str, shape))}; found {len(numbers)} rows. Complete it."
         )
     values = {}
     for field in fields:
-        values[field] = np.empty(len(rows))
+        values[field] = np.empty(len(numbers))
         values[field][number] = column[field]
         values[field] = values[field].reshape(shape)
     return FieldTable(places, values)

@@ -1,12 +1,12 @@
 """Places over time in a CSV file, with units in the heads of its columns."""
 
-import csv
 import re
 from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
 
+from quintet.components.sph_fluid.setup.csv_table import read_csv
 from quintet.interfaces.component import Array
 
 UNITS = {"time": "s", "x": "m", "y": "m", "z": "m", "angle": "rad"}
@@ -23,15 +23,7 @@ def read_motion(file: str) -> tuple[Array, Array]:
         Where it is no table of finite numbers with known columns and units.
     """
     name = Path(file).name
-    try:
-        with open(file, newline="", encoding="utf-8") as text:
-            head, *rows = [row for row in csv.reader(text) if row]
-        numbers = np.array([[float(number) for number in row] for row in rows])
-    except (OSError, ValueError, csv.Error) as error:
-        raise ValueError(
-            f"motion.file {name} must have a line with the names of its columns, then lines of "
-            f"numbers; reading it found {error}. Correct it."
-        ) from error
+    head, numbers = read_csv(file, "motion.file")
     matches = [HEAD.fullmatch(cell) for cell in head]
     columns = [match[1] if match else "" for match in matches]
     right = len(set(columns)) == len(columns) and "time" in columns and len(columns) > 1
@@ -43,14 +35,14 @@ def read_motion(file: str) -> tuple[Array, Array]:
     if numbers.ndim != 2 or numbers.shape[1] != len(columns) or not np.isfinite(numbers).all():
         raise ValueError(
             f"motion.file {name} must have {len(columns)} finite numbers in each of its lines; "
-            f"found {len(rows)} lines that are not all such. Correct it."
+            f"found {len(numbers)} lines that are not all such. Correct it."
         )
     values = {
         match[1]: column * _factor(name, match[1], match[2])
         for match, column in zip(matches, numbers.T, strict=True)
         if match
     }
-    none = np.zeros(len(rows))
+    none = np.zeros(len(numbers))
     places = np.stack([values.get(axis, none) for axis in ("x", "y", "z", "angle")], axis=1)
     return values["time"], places
 

@@ -123,7 +123,7 @@ def test_a_scene_chooses_nodes_and_elements_by_sets_of_the_file(tmp_path):
         gauges=Gauges(element_set_gauges=(Elements(element_set="Foot, new"),)),
     )
     assert (plate.model.free == 0).all(axis=1).nonzero()[0].tolist() == [0, 1, 2, 3]
-    assert [one.rows.tolist() for one in plate.measured.element_sets] == [[1]]
+    assert [elements.rows.tolist() for elements in plate.measured.element_sets] == [[1]]
 
 
 def test_a_title_of_two_parts_is_no_name(tmp_path):

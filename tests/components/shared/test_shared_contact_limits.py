@@ -88,8 +88,8 @@ def test_a_particle_is_spread_over_faces_of_a_surface_that_bends(angle, sign):
     take(contact, node)
     contact.kick(points, 1.0)
     share = (1.7 + 1 / 3 - 2.0) / 2.0 / 3.0  # of the right third, on the second face
-    found = contact.near.weight[0, np.isin(contact.near.nodes[0], (2, 5))].sum()
-    assert found == pytest.approx(share * np.cos(angle))
+    beside = contact.near.weight[0, np.isin(contact.near.nodes[0], (2, 5))].sum()
+    assert beside == pytest.approx(share * np.cos(angle))
     pushed = contact.near.gap[0]  # of a mean of the surface, which its outer third tilts
-    tilt = sign * 2.0 * np.sin(angle) * found
+    tilt = sign * 2.0 * np.sin(angle) * beside
     assert pushed == pytest.approx(-0.1 - tilt, abs=1e-12)

@@ -38,7 +38,7 @@ def test_a_gauge_above_an_open_tank_is_accepted():
 
 
 @pytest.mark.parametrize(
-    ("section", "given", "words"),
+    ("section", "changes", "words"),
     [
         (0.1, {}, "0.15 m or more from its face x-, or it misses"),
         (1.9, {}, r"0.15 m or more from its face x\+, .* found x = 1.9 m"),
@@ -49,15 +49,15 @@ def test_a_gauge_above_an_open_tank_is_accepted():
                "boundary.open_faces": []}, r"inside the tank, 0 m or more from its face x\+"),
     ],
 )  # fmt: skip
-def test_a_section_that_misses_flow_is_refused(section, given, words):
-    settings = TUBE | {"gauges.discharge_gauges": [section], "gauges.velocity_gauges": []} | given
-    found, mistakes = read(SphFluidParams, nested(settings), "water")
-    assert found is None
+def test_a_section_that_misses_flow_is_refused(section, changes, words):
+    settings = TUBE | {"gauges.discharge_gauges": [section], "gauges.velocity_gauges": []} | changes
+    params, mistakes = read(SphFluidParams, nested(settings), "water")
+    assert params is None
     assert any(re.search(words, mistake) for mistake in mistakes), mistakes
 
 
 @pytest.mark.parametrize(
-    ("section", "given"),
+    ("section", "changes"),
     [
         (0.15, {}),
         (1.95, {"boundary.inflow": [], "boundary.outflow": []}),
@@ -65,6 +65,6 @@ def test_a_section_that_misses_flow_is_refused(section, given, words):
                "boundary.open_faces": []}),
     ],
 )  # fmt: skip
-def test_a_section_reads_all_flow_at_free_and_periodic_faces(section, given):
-    fluid = tube(**{"gauges.discharge_gauges": [section], "gauges.velocity_gauges": []} | given)
+def test_a_section_reads_all_flow_at_free_and_periodic_faces(section, changes):
+    fluid = tube(**{"gauges.discharge_gauges": [section], "gauges.velocity_gauges": []} | changes)
     assert fluid.params.gauges.discharge_gauges == (section,)

@@ -108,8 +108,8 @@ def test_a_tank_that_speeds_up_steadily_holds_fluid_as_inclined_gravity_does():
         moving.step(4e-4)
         still.step(4e-4)
     for field in ("position_density", "velocity_pressure"):
-        one, other = getattr(moving.state, field), getattr(still.state, field)
-        assert one == pytest.approx(other, rel=1e-9, abs=1e-9)
+        in_motion, at_rest = getattr(moving.state, field), getattr(still.state, field)
+        assert in_motion == pytest.approx(at_rest, rel=1e-9, abs=1e-9)
     readings = outputs_of(moving)["pressure_gauge.pressure"]
     assert readings == pytest.approx(outputs_of(still)["pressure_gauge.pressure"], rel=1e-9)
     assert readings[0] > 0.0

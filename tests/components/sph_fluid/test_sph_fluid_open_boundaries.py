@@ -68,8 +68,8 @@ def test_particles_of_buffers_are_no_part_of_the_fluid() -> None:
 
 @pytest.mark.parametrize("integration", ["extrapolated", "symplectic"])
 def test_threads_and_a_saved_state_change_no_bit(integration: str) -> None:
-    given = {"integration": integration, "xsph": 0.2, "boundary.outflow": [{"face": "x+"}]}
-    fluid, other = tube(**given), tube(**given)
+    changes = {"integration": integration, "xsph": 0.2, "boundary.outflow": [{"face": "x+"}]}
+    fluid, other = tube(**changes), tube(**changes)
     shared = SphFluid(fluid.params, Resources(2))
     for each in (fluid, shared):
         run(each, 0.3)
@@ -95,8 +95,8 @@ def test_an_inflow_may_have_a_profile_by_formula_or_table(tmp_path: Any) -> None
     table = tmp_path / "profile.csv"
     table.write_text("z, u\n0.0, 0.0\n0.5, 1.0\n")
     speeds = []
-    for given in ({"speed": "2 * z"}, {"table": str(table)}):
-        fluid = tube(**{"boundary.inflow": [{"face": "x-", **given}]})
+    for changes in ({"speed": "2 * z"}, {"table": str(table)}):
+        fluid = tube(**{"boundary.inflow": [{"face": "x-", **changes}]})
         held = fluid.state.role == 1
         z, u = fluid.state.position_density[: fluid.state.fluid, 2], fluid.state.velocity_pressure
         assert u[: fluid.state.fluid][held, 0] == pytest.approx(2.0 * z[held])
@@ -105,12 +105,12 @@ def test_an_inflow_may_have_a_profile_by_formula_or_table(tmp_path: Any) -> None
 
 
 def test_flow_may_go_the_other_way() -> None:
-    given = {
+    changes = {
         "boundary.inflow": [{"face": "x+", "speed": SPEED}],
         "boundary.outflow": [{"face": "x-"}],
         "initial.velocity": [-SPEED, "0", "0"],
     }
-    forth, back = tube(), tube(**given)
+    forth, back = tube(), tube(**changes)
     for each in (forth, back):
         run(each, 1.0)
     there, here = balance(forth), balance(back)
@@ -120,7 +120,7 @@ def test_flow_may_go_the_other_way() -> None:
 
 def test_a_level_bears_the_water_at_both_ends() -> None:
     """Water with a surface flows through slowly, and stands as high as its outflow says."""
-    given = {
+    changes = {
         "gravity": [0.0, 0.0, -9.81],
         "sound_speed": 25.0,
         "viscosity.artificial": 0.1,
@@ -131,7 +131,7 @@ def test_a_level_bears_the_water_at_both_ends() -> None:
         "gauges.level_gauges": [[1.0, 0.5]],
         "gauges.pressure_gauges": [[1.0, 0.5, 0.0]],
     }
-    fluid = tube(**given)
+    fluid = tube(**changes)
     run(fluid, 2.0)
     outputs = outputs_of(fluid)
     assert outputs["level_gauge.height"] == pytest.approx(0.5, abs=0.6 * SPACING)
@@ -157,8 +157,8 @@ def test_an_outflow_keeps_its_pressure() -> None:
     """
     density = 1000.0 * (1.0 + 7.0 * 1000.0 / (10.0**2 * 1000.0)) ** (1.0 / 7.0)  # Tait
     outflow = [{"face": "x+", "pressure": 1000.0}]
-    given = {"boundary.outflow": outflow, "initial.density": density, "kernel": "wendland"}
-    fluid = tube(**given)
+    changes = {"boundary.outflow": outflow, "initial.density": density, "kernel": "wendland"}
+    fluid = tube(**changes)
     run(fluid, 2.0)
     assert fluid.view()["pressure"] == pytest.approx(1000.0, rel=0.02)
 
@@ -189,7 +189,7 @@ INFLOW = {"face": "x-", "speed": 1.0}
 
 
 @pytest.mark.parametrize(
-    ("given", "words"),
+    ("changes", "words"),
     [
         ({"boundary.walls": None}, "boundary.inflow x- must be an open face of the tank"),
         ({"boundary.open_faces": ["x-"]}, r"boundary.outflow x\+ must be an open face"),
@@ -235,17 +235,17 @@ INFLOW = {"face": "x-", "speed": 1.0}
         ),
     ],
 )  # fmt: skip
-def test_what_cannot_flow_is_refused(given: dict[str, Any], words: str) -> None:
-    found, mistakes = read(SphFluidParams, nested(TUBE | given), "water")
-    assert found is None
+def test_what_cannot_flow_is_refused(changes: dict[str, Any], words: str) -> None:
+    params, mistakes = read(SphFluidParams, nested(TUBE | changes), "water")
+    assert params is None
     assert any(re.search(words, mistake) for mistake in mistakes), mistakes
 
 
 def test_a_table_without_speeds_is_refused(tmp_path: Any) -> None:
     table = tmp_path / "profile.csv"
     table.write_text("z, v\n0.0, 0.0\n0.5, 1.0\n")
-    given = {"boundary.inflow": [{"face": "x-", "table": str(table)}]}
-    _, mistakes = read(SphFluidParams, nested(TUBE | given), "water")
+    changes = {"boundary.inflow": [{"face": "x-", "table": str(table)}]}
+    _, mistakes = read(SphFluidParams, nested(TUBE | changes), "water")
     assert "table must have a column u [m/s], into the tank" in mistakes[0]
 
 

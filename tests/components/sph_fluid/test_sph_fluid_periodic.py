@@ -36,8 +36,8 @@ VORTICES = {
 }
 
 
-def params_of(table: dict[str, Any], **given: Any) -> SphFluidParams:
-    params, mistakes = read(SphFluidParams, nested(table | given), "water")
+def params_of(table: dict[str, Any], **changes: Any) -> SphFluidParams:
+    params, mistakes = read(SphFluidParams, nested(table | changes), "water")
     assert not mistakes, mistakes
     return params
 
@@ -121,15 +121,15 @@ def test_vortices_fade_as_taylor_and_green_say() -> None:
     energy goes where particles fall into place again, 1.7 times as fast at any spacing.
     """
     nu, end = 0.02, 0.1
-    given = {"viscosity.kinematic": nu, "kernel": "wendland", "sound_speed": 10.0}
-    fluid = SphFluid(params_of(PLANE | VORTICES, **given, spacing=0.5 * SPACING))
+    changes = {"viscosity.kinematic": nu, "kernel": "wendland", "sound_speed": 10.0}
+    fluid = SphFluid(params_of(PLANE | VORTICES, **changes, spacing=0.5 * SPACING))
     before = fluid.totals().kinetic
     run(fluid, end)
     rate = -np.log(fluid.totals().kinetic / before) / end
     assert rate == pytest.approx(16.0 * np.pi**2 * nu, rel=0.03)
 
 
-def poiseuille(**given: Any) -> SphFluid:
+def poiseuille(**changes: Any) -> SphFluid:
     """A channel between plates, driven by gravity along it, from its steady flow."""
     table = {
         "spacing": 0.05,
@@ -146,7 +146,7 @@ def poiseuille(**given: Any) -> SphFluid:
         "viscosity.kinematic": 1.0,
         "initial.velocity": ["0.8 * z * (1 - z)", "0", "0"],
     }
-    return SphFluid(params_of(table, **given))
+    return SphFluid(params_of(table, **changes))
 
 
 def test_flow_between_plates_stays_as_it_is() -> None:
@@ -232,7 +232,7 @@ def test_a_body_in_a_face_is_pushed_as_inside() -> None:
 
 
 @pytest.mark.parametrize(
-    ("given", "words"),
+    ("changes", "words"),
     [
         ({"boundary.walls": None}, "needs boundary.walls, whose length along x is the period"),
         ({"boundary.open_faces": ["x-"]}, "faces are neither open nor planes of symmetry"),
@@ -259,9 +259,9 @@ def test_a_body_in_a_face_is_pushed_as_inside() -> None:
         ({"gauges.front_gauge": "x"}, "front_gauge must not lie along an axis on which"),
     ],
 )  # fmt: skip
-def test_what_cannot_repeat_is_refused(given: dict[str, Any], words: str) -> None:
-    found, mistakes = read(SphFluidParams, nested(PLANE | given), "water")
-    assert found is None
+def test_what_cannot_repeat_is_refused(changes: dict[str, Any], words: str) -> None:
+    params, mistakes = read(SphFluidParams, nested(PLANE | changes), "water")
+    assert params is None
     assert re.search(words, mistakes[0]), mistakes
 
 

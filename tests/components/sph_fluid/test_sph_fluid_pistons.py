@@ -57,16 +57,16 @@ def piston_x(fluid):
 @pytest.mark.parametrize(("tables", "part"), [((OBSTACLE,), "obstacles.0"), ((WALL,), "walls.x-")])
 def test_a_part_that_is_told_to_stay_acts_as_one_that_stands(tables, part, method):
     still = fluid_with(*tables, {"boundary.method": method})
-    told = fluid_with(*tables, {"boundary.method": method}, piston(part, STAY))
-    assert still.items() == told.items() == particles(told.params)
-    for fluid in (still, told):
+    with_piston = fluid_with(*tables, {"boundary.method": method}, piston(part, STAY))
+    assert still.items() == with_piston.items() == particles(with_piston.params)
+    for fluid in (still, with_piston):
         for _ in range(20):
             fluid.step(5e-4)
     place = "position_density"
-    ours, others = (getattr(f.state, place)[: f.state.fluid] for f in (still, told))
-    order, other = np.argsort(still.state.identity), np.argsort(told.state.identity)
+    ours, others = (getattr(f.state, place)[: f.state.fluid] for f in (still, with_piston))
+    order, other = np.argsort(still.state.identity), np.argsort(with_piston.state.identity)
     assert ours[order] == pytest.approx(others[other], abs=1e-9)
-    assert told.totals().work == 0.0
+    assert with_piston.totals().work == 0.0
 
 
 @pytest.mark.parametrize(("tables", "part"), [((OBSTACLE,), "obstacles.0"), ((WALL,), "walls.x-")])

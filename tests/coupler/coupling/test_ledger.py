@@ -133,10 +133,10 @@ def test_a_mass_balance_that_a_component_keeps_is_told_and_saved(tmp_path):
     ledger.note(0.0, {"a": sums, "b": {**sums, "mass_balance": {}}})
     other.load(ledger.save())
     for each in (ledger, other):
-        told = each.summary()["mass_balance"]
-        assert told.keys() == {"a"}
-        assert told["a"]["kg"] == {"at the start": 2.0, "entered": 1.5}
-        assert (told["a"]["now"], told["a"]["residual"]) == (3.0, pytest.approx(0.5 / 3.5))
+        balances = each.summary()["mass_balance"]
+        assert balances.keys() == {"a"}
+        assert balances["a"]["kg"] == {"at the start": 2.0, "entered": 1.5}
+        assert (balances["a"]["now"], balances["a"]["residual"]) == (3.0, pytest.approx(0.5 / 3.5))
         each.close()
 
 

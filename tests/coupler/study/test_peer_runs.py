@@ -33,12 +33,12 @@ def test_a_study_whose_program_has_runs_left_was_interrupted(tmp_path):
 )  # fmt: skip
 def test_runs_of_a_program_are_spread_over_the_refinements(tmp_path, refinements, turns):
     beside = Beside(read_peers(["toy"], load(str(write_peer(tmp_path)))), tmp_path, bool, False)
-    found = []
+    labels = []
     for number in range(refinements):
         before = len(beside.rows.get("toy", ()))
         beside.turn(number, refinements)
-        found.append([row["label"] for row in beside.rows["toy"][before:]])
-    assert found == turns
+        labels.append([row["label"] for row in beside.rows["toy"][before:]])
+    assert labels == turns
 
 
 APART = "import os, time; os.setsid(); open('apart', 'w').close(); time.sleep(60)"

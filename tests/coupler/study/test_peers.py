@@ -42,12 +42,12 @@ def test_a_program_is_measured_as_the_scene_is_and_runs_in_turns(tmp_path, capsy
         assert row["cpu"] == 0.5 and 0.0 < row["cpu_process"] < row["wall"] + 0.1
         assert row["load"] >= 0.0 and row["cores"] == os.cpu_count() and row["memory"] > 1e6
     assert all(row["load"] >= 0.0 for row in content["rows"])
-    said = capsys.readouterr().out
+    text = capsys.readouterr().out
     places = [
-        said.index(words)
+        text.index(words)
         for words in ("0.02: done", "toy, late:", "toy, later:", "0.01: done", "toy, latest:")
     ]
-    assert places == sorted(places) and "Toy 7.1: exact, but for its phase" in said
+    assert places == sorted(places) and "Toy 7.1: exact, but for its phase" in text
     left = {path.name for path in (tmp_path / "all" / "toy_late").iterdir()}
     assert {"peer.json", "peer.log", "curve.txt"} <= left and "large" not in left
     result = json.loads((tmp_path / "all" / "toy_late" / "peer.json").read_text())
@@ -96,9 +96,9 @@ def test_a_run_that_fails_is_told_and_the_others_count(tmp_path, change, more, s
 
 def test_a_program_that_is_not_there_is_refused_with_what_to_do(tmp_path, capsys):
     path = write_peer(tmp_path, ('["@python@", "toy.py"', '["no-such-program", "toy.py"'))
-    said = refusal(capsys, path, "--beside", "toy")
-    assert "Toy must be installed; there is no program no-such-program" in said
-    assert "Install it: pip install toy" in said
+    text = refusal(capsys, path, "--beside", "toy")
+    assert "Toy must be installed; there is no program no-such-program" in text
+    assert "Install it: pip install toy" in text
     assert "--beside tow is not known. Did you mean toy?" in refusal(
         capsys, path, "--beside", "tow"
     )
@@ -109,8 +109,8 @@ def test_a_program_that_is_not_there_is_refused_with_what_to_do(tmp_path, capsys
 
 
 def test_a_scene_without_inputs_of_programs_says_where_they_belong(tmp_path, capsys):
-    said = refusal(capsys, write(tmp_path, REFINEMENTS), "--beside", "toy")
-    assert "this scene has no inputs of other programs. Put them into peers/toy" in said
+    text = refusal(capsys, write(tmp_path, REFINEMENTS), "--beside", "toy")
+    assert "this scene has no inputs of other programs. Put them into peers/toy" in text
 
 
 @pytest.mark.parametrize(
@@ -133,8 +133,8 @@ def test_a_scene_without_inputs_of_programs_says_where_they_belong(tmp_path, cap
     ],
 )
 def test_mistakes_of_a_table_are_told(tmp_path, capsys, change, sentence):
-    said = refusal(capsys, write_peer(tmp_path, change), "--beside", "toy")
-    assert sentence in said and "peers/toy/peer.toml: " in said
+    text = refusal(capsys, write_peer(tmp_path, change), "--beside", "toy")
+    assert sentence in text and "peers/toy/peer.toml: " in text
 
 
 @pytest.mark.parametrize(
