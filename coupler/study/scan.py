@@ -25,6 +25,7 @@ from quintet.coupler.scene.read import library, load_variants, parse
 from quintet.coupler.scene.scan_table import Scan
 from quintet.coupler.scene.scene import Scene
 from quintet.coupler.study.child_run import FOREVER, ChildRun
+from quintet.coupler.study.scene_or_all import refuse_with_all, require_scene_or_all
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.params import shown, unknown
 
@@ -73,8 +74,7 @@ class Runs:
 
 def run_scan(options: argparse.Namespace) -> int:
     """Run the scans of a scene, or of all scenes; return the exit status: 1 if a row is silent."""
-    if options.all == (options.scene is not None):
-        raise SceneError("scan needs either a scene or --all. Give one of them.")
+    require_scene_or_all("scan", options)
     if not options.all and options.quick:
         raise SceneError("--quick belongs to --all. Give --preset quick in its place.")
     wanted = JsonFile(options.json, ("scene", "scans"))
@@ -82,7 +82,7 @@ def run_scan(options: argparse.Namespace) -> int:
         content, status = _scan_scene(options)
         wanted.write(content)
         return status
-    _refuse_single(options)
+    refuse_with_all("scan", options, "name", "out")
     contents, statuses = [], []
     for name, preset in _scenes_with_scans(options.quick):
         print(f"{name}{f' ({preset})' if preset else ''}", flush=True)
@@ -94,15 +94,6 @@ def run_scan(options: argparse.Namespace) -> int:
             break
     wanted.write(contents)
     return max(statuses, default=results.DONE)
-
-
-def _refuse_single(options: argparse.Namespace) -> None:
-    """Refuse what belongs to one scene where all are run."""
-    refused = {"--preset": options.preset, "--set": options.settings, "--swap": options.swap}
-    refused |= {"--name": options.name, "--out": options.out}
-    wrong = [option for option, value in refused.items() if value]
-    if wrong:
-        raise SceneError(f"scan --all takes no {', '.join(wrong)}. Remove it, or name a scene.")
 
 
 def _scenes_with_scans(quick: bool) -> list[tuple[str, str]]:

@@ -24,6 +24,7 @@ from quintet.coupler.scene.read import library, load_variants, parse
 from quintet.coupler.scene.stability_table import Limit
 from quintet.coupler.scene.varied_tables import folder_name
 from quintet.coupler.study.child_run import ChildRun
+from quintet.coupler.study.scene_or_all import refuse_with_all, require_scene_or_all
 from quintet.coupler.study.stability_search import Search, find_limit, summary
 from quintet.interfaces.errors import SceneError
 
@@ -63,8 +64,7 @@ class Searches:
 
 def run_stability(options: argparse.Namespace) -> int:
     """Find every limit of the scene, or of all; print them, and write them as JSON."""
-    if options.all == (options.scene is not None):
-        raise SceneError("stability needs a scene or --all. Give one of them.")
+    require_scene_or_all("stability", options)
     if options.all:
         return _run_all(options)
     if options.readme:
@@ -92,11 +92,7 @@ def run_stability(options: argparse.Namespace) -> int:
 
 def _run_all(options: argparse.Namespace) -> int:
     """Find the limits of all scenes that come with quintet; what was found before is kept."""
-    refused = {"--preset": options.preset, "--set": options.settings, "--swap": options.swap}
-    if wrong := [option for option, value in refused.items() if value]:
-        raise SceneError(
-            f"stability --all takes no {', '.join(wrong)}. Remove it, or name a scene."
-        )
+    refuse_with_all("stability", options)
     wanted = JsonFile(options.json, KEYS, kind=list)
     if options.readme:
         marked_place.LIMITS.check(options.readme)

@@ -22,6 +22,7 @@ from quintet.coupler.run.signals import StopRequest
 from quintet.coupler.scene.read import library
 from quintet.coupler.study.row import row_of
 from quintet.coupler.study.run_jobs import finished
+from quintet.coupler.study.scene_or_all import refuse_with_all
 from quintet.coupler.study.studies_plan import Planned, plan_all, read_studies, within_budget
 from quintet.coupler.study.study import date_of, summarize
 from quintet.coupler.study.sweep_run import JOURNAL, Job, carry_out
@@ -32,6 +33,8 @@ NOT_RUN = "not run"
 LEFT_OUT = ("within", "scales", "units", "overhead", "items")  # of rows: as in the scene
 PARTS = ("compute", "cpu", "memory")  # costs of a component that are kept
 DIGITS = 9  # significant, of numbers
+# Options of the study of one scene.
+OF_ONE_STUDY = ("transport", "error", "run", "keep", "force", "beside")
 MINUTES = 60.0  # for all runs, if not given
 Row = dict[str, Any]
 
@@ -61,12 +64,7 @@ def run_all(options: argparse.Namespace) -> int:
 
 def _refuse_single(options: argparse.Namespace) -> None:
     """Refuse what belongs to one scene where all are run."""
-    refused = {"--preset": options.preset, "--set": options.settings, "--swap": options.swap}
-    refused |= {"--transport": options.transport, "--error": options.error, "--run": options.run}
-    refused |= {"--keep": options.keep, "--force": options.force, "--beside": options.beside}
-    wrong = [option for option, value in refused.items() if value]
-    if wrong:
-        raise SceneError(f"study --all takes no {', '.join(wrong)}. Remove it, or name a scene.")
+    refuse_with_all("study", options, *OF_ONE_STUDY)
     if options.minutes is not None and not 0.0 <= options.minutes < float("inf"):
         raise SceneError(f"--minutes must be 0 or more; found {options.minutes:g}. Correct it.")
 

@@ -29,6 +29,7 @@ from quintet.coupler.study.finest import compare_with_finest
 from quintet.coupler.study.peers.beside import Beside, refuse_changes
 from quintet.coupler.study.peers.peer import KIND, Peer, read_peers
 from quintet.coupler.study.row import row_of, worst
+from quintet.coupler.study.scene_or_all import require_scene_or_all
 from quintet.coupler.study.wanted_error import choose
 from quintet.interfaces.errors import SceneError
 
@@ -64,8 +65,7 @@ def run_study(options: argparse.Namespace) -> int:
 
 
 def _check_options(options: argparse.Namespace) -> None:
-    if options.all == (options.scene is not None):
-        raise SceneError("study needs either a scene or --all. Give one of them.")
+    require_scene_or_all("study", options)
     for option in ("readme", "minutes"):
         if getattr(options, option) is not None:
             raise SceneError(f"--{option} belongs to --all. Remove it, or name no scene.")
