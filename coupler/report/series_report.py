@@ -127,7 +127,10 @@ def _perturbations(content: Content) -> Iterator[tuple[str, str]]:
 
 
 def _sweep(content: Content) -> Iterator[Part]:
-    axes = [Axis(path, tuple(values)) for path, values in content["over"].items()]
+    units = content.get("units", {})
+    axes = [
+        Axis(path, tuple(values), units.get(path, "")) for path, values in content["over"].items()
+    ]
     yield Part("Runs", table=_plain(sweep_report.table(axes, content["rows"])))
 
 
@@ -138,7 +141,9 @@ def _calibrate(content: Content) -> Iterator[Part]:
 def _stability(content: Content) -> Iterator[Part]:
     limits = content["limits"]
     sentences = list(stability_tables.sentences(limits))
-    yield Part("Limits", sentences, _plain(stability_tables.table(limits)))
+    yield Part(
+        "Limits", sentences, _plain(stability_tables.table(limits, content.get("units", {})))
+    )
 
 
 PARTS: Mapping[str, Callable[[Content], Iterator[Part]]] = {

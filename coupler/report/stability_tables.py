@@ -1,6 +1,6 @@
 """Limits of stability: a table for the screen, and one of all scenes for a README."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from rich.console import Console
@@ -13,14 +13,19 @@ HEADS = ("scene", "limit of", "at", "predicted", "by", "found", "ratio", "what b
 Found = dict[str, Any]
 
 
-def print_limits(limits: Sequence[Found], screen: Console) -> None:
+def with_unit(path: str, units: Mapping[str, str]) -> str:
+    """A key with its unit, if it has one."""
+    return f"{path} [{units[path]}]" if path in units else path
+
+
+def print_limits(limits: Sequence[Found], units: Mapping[str, str], screen: Console) -> None:
     """Print a line of numbers for each limit, then how each was found."""
-    screen.print(table(limits))
+    screen.print(table(limits, units))
     for sentence in sentences(limits):
         screen.print(sentence)
 
 
-def table(limits: Sequence[Found]) -> Table:
+def table(limits: Sequence[Found], units: Mapping[str, str]) -> Table:
     """One row of numbers for each limit."""
     columns = ["limit", "against", "predicted", "found", "ratio", "degraded", "then"]
     if all(limit["degraded"] is None for limit in limits):
@@ -31,7 +36,8 @@ def table(limits: Sequence[Found]) -> Table:
         screen_table.add_column(head, justify="right" if right else "left", overflow="fold")
     for limit in limits:
         cells = {key: three_digits(limit[key]) for key in columns if key in NUMBERS}
-        cells |= {"limit": limit["name"], "against": _against(limit), "then": limit["state"] or "-"}
+        name = _name(limit, units)
+        cells |= {"limit": name, "against": _against(limit), "then": limit["state"] or "-"}
         screen_table.add_row(*(cells[head] for head in columns))
     return screen_table
 
@@ -41,6 +47,13 @@ def sentences(limits: Sequence[Found]) -> Iterator[str]:
     for limit in limits:
         place = f" at {against}" if (against := _against(limit)) else ""
         yield f"{limit['name']}{place}: {_how(limit)}"
+
+
+def _name(limit: Found, units: Mapping[str, str]) -> str:
+    """Name of a limit, with the unit of its parameter; a factor of several has none."""
+    parameter = limit["parameter"]
+    unit = units.get(parameter) if isinstance(parameter, str) else None
+    return f"{limit['name']} [{unit}]" if unit else str(limit["name"])
 
 
 def _against(limit: Found) -> str:

@@ -29,7 +29,7 @@ def table(axes: Sequence[Axis], rows: Sequence[Row]) -> Table:
     """One row for each run: keys, quantities, status, times; of many runs the first."""
     units = units_of(rows)
     screen_table = Table(box=None, pad_edge=False)
-    heads = [axis.path for axis in axes] + [f"{name} [{unit}]" for name, unit in units.items()]
+    heads = [axis.label for axis in axes] + [f"{name} [{unit}]" for name, unit in units.items()]
     for head in (*heads, "status", "wall [s]", "CPU [s]", "run"):
         left = head in ("status", "run")
         screen_table.add_column(head, justify="left" if left else "right", overflow="fold")
@@ -146,5 +146,5 @@ def _axes(
     elif min(places.values()) > 0.0 and max(places.values()) > SPAN * min(places.values()):
         panel.set_xscale("log")
     panel.set_title(name, fontsize=9)
-    panel.set(xlabel=across.path, ylabel=f"{name} [{rows[0]['units'][name]}]")
+    panel.set(xlabel=across.label, ylabel=f"{name} [{rows[0]['units'][name]}]")
     panel.grid(alpha=0.3)

@@ -1,6 +1,6 @@
 """Texts with units in a scene, ``"20 mm"``: each becomes a number in the unit of its key."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import fields
 from pathlib import Path
 from typing import Any
@@ -8,11 +8,11 @@ from typing import Any
 from quintet.coupler.coupling.links import keys_of
 from quintet.coupler.measures.expectation import Expectation
 from quintet.coupler.scene.foreign_code import trusted_params
-from quintet.coupler.scene.scene import GroupSettings, SceneFile
+from quintet.coupler.scene.scene import GroupSettings, Scene, SceneFile
 from quintet.coupler.scene.stability_table import LimitTable
 from quintet.coupler.scene.tables import SceneTables
 from quintet.interfaces.keys import Key, keys
-from quintet.interfaces.quantities import has_quantities, in_si
+from quintet.interfaces.quantities import has_quantities, in_si, is_in_si
 
 Table = dict[str, Any]
 TABLES = {field.name for field in fields(SceneTables)}
@@ -41,6 +41,13 @@ def scene_in_si(table: Table, folder: Path, imports: bool) -> tuple[Table, list[
         return table, []
     conversion = _Conversion(table, folder, imports)
     return conversion.tables(), conversion.mistakes
+
+
+def units_of_keys(scene: Scene, paths: Iterable[str]) -> dict[str, str]:
+    """Units of keys of a scene that runs, by their dotted paths; those without one are left out."""
+    conversion = _Conversion(scene.resolved, scene.folder, imports=True)
+    units = {path: conversion.unit_at(path) for path in paths}
+    return {path: unit for path, unit in units.items() if unit != "1" and is_in_si(unit)}
 
 
 class _Conversion:
@@ -110,10 +117,10 @@ class _Conversion:
             return unit if measure in LIKE_FIELD else integral
         if key.unit == OF_PARAMETER:
             path = table.get("parameter")
-            return (self._unit_at(path) if isinstance(path, str) else "1") or key.unit
+            return (self.unit_at(path) if isinstance(path, str) else "1") or key.unit
         return key.unit
 
-    def _unit_at(self, path: str) -> str:
+    def unit_at(self, path: str) -> str:
         """Unit of the key at a dotted path of the scene; "" where there is none."""
         names = path.split(".")
         params: type | None = SceneFile

@@ -16,10 +16,16 @@ MOST = 100_000  # runs of a sweep
 
 @dataclass(frozen=True, slots=True)
 class Axis:
-    """One key of the scene, by its dotted path, and the values that it takes."""
+    """One key of the scene, by its dotted path, the values that it takes, and their unit."""
 
     path: str
     values: tuple[Any, ...]
+    unit: str = ""  # if it has one
+
+    @property
+    def label(self) -> str:
+        """Path and unit, as tables and pictures have it."""
+        return f"{self.path} [{self.unit}]" if self.unit else self.path
 
 
 def read_axes(options: Iterable[str]) -> list[Axis]:

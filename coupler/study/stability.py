@@ -6,6 +6,7 @@ Where only expectations fail a scene is degraded, not unstable; that limit is lo
 
 import argparse
 import json
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -20,7 +21,9 @@ from quintet.coupler.report.stability_tables import markdown, print_limits
 from quintet.coupler.run import results
 from quintet.coupler.run.folder import begin_series, discard_former, share
 from quintet.coupler.run.signals import StopRequest
+from quintet.coupler.scene.quantity_texts import units_of_keys
 from quintet.coupler.scene.read import library, load_variants, parse
+from quintet.coupler.scene.scene import Scene
 from quintet.coupler.scene.stability_table import Limit
 from quintet.coupler.scene.varied_tables import folder_name
 from quintet.coupler.study.child_run import ChildRun
@@ -84,7 +87,7 @@ def run_stability(options: argparse.Namespace) -> int:
         stop = StopRequest()
         with stop.listening():
             limits = Searches(options, stop).find(options.scene, variants.stability, place.path)
-        content = _write(name, limits, place.path, _asked(options))
+        content = _write(name, scene, limits, place.path, _asked(options))
         wanted.write(content)
         _show(content, place.path)
     return results.INTERRUPTED if stop() else _status(limits)
@@ -99,16 +102,16 @@ def _run_all(options: argparse.Namespace) -> int:
     before = json.loads(options.json.read_text("utf-8") or "[]") if _is_there(options.json) else []
     content: dict[str, Found] = {entry["scene"]: entry for entry in before}
     # Every scene is checked before anything starts.
-    scenes = {name: load_variants(name)[1].stability for name in _cheapest_first()}
+    scenes = {name: load_variants(name) for name in _cheapest_first()}
     content = {name: content[name] for name in scenes if name in content}
     folder, stop = share("stability", "all", (NAME,), options.out), StopRequest()
     with stop.listening():
-        for name, limits in scenes.items():
+        for name, (scene, variants) in scenes.items():
             (folder / name).mkdir(exist_ok=True)
-            summaries = Searches(options, stop).find(name, limits, folder / name)
+            summaries = Searches(options, stop).find(name, variants.stability, folder / name)
             if stop():
                 break
-            content[name] = _write(name, summaries, folder / name, _asked(options))
+            content[name] = _write(name, scene, summaries, folder / name, _asked(options))
             ordered = [content[scene] for scene in sorted(content)]
             wanted.write(ordered)
             write_whole(folder / NAME, json.dumps(ordered, indent=2))
@@ -149,17 +152,31 @@ def _cheapest_first() -> list[str]:
     return sorted(minutes, key=lambda name: (minutes[name], name))
 
 
-def _write(scene: str, limits: list[Found], folder: Path, asked: Found) -> Found:
+def _write(name: str, scene: Scene, limits: list[Found], folder: Path, asked: Found) -> Found:
     """Write the limits of a scene; return the content."""
-    content = {"scene": scene, "asked": asked, "limits": limits, "machine": results.machine()}
+    content = {
+        "scene": name,
+        "asked": asked,
+        "units": units_of_keys(scene, _keys_of(limits)),
+        "limits": limits,
+        "machine": results.machine(),
+    }
     write_whole(folder / NAME, json.dumps(content, indent=2))
     return content
 
 
+def _keys_of(limits: list[Found]) -> Iterator[str]:
+    """Paths of the keys that limits are about."""
+    for limit in limits:
+        parameter = limit["parameter"]
+        yield from [parameter] if isinstance(parameter, str) else ()  # a factor has no unit
+        yield from limit["against"] or ()
+
+
 def _show(content: Found, folder: Path) -> None:
     """Print the limits, and draw the maps of those in two parameters."""
-    print_limits(content["limits"], console())
-    if drawn := draw_maps(content["scene"], content["limits"], folder / PICTURE):
+    print_limits(content["limits"], content["units"], console())
+    if drawn := draw_maps(content["scene"], content["limits"], content["units"], folder / PICTURE):
         print(f"drawn in {drawn}")
 
 

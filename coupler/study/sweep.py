@@ -53,7 +53,8 @@ class Sweep(RunSeries):
     def summary(self) -> Row:
         """All of it, for programs."""
         keys = {axis.path: list(axis.values) for axis in self.axes}
-        content = {"scene": self.scene, "over": keys, "rows": self.rows}
+        units = {axis.path: axis.unit for axis in self.axes if axis.unit}
+        content = {"scene": self.scene, "over": keys, "units": units, "rows": self.rows}
         return {**content, "machine": results.machine()}
 
 

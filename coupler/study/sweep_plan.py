@@ -7,6 +7,7 @@ from typing import Any
 from quintet.coupler.run.results import machine
 from quintet.coupler.run.run_scene import check_machine
 from quintet.coupler.scene.overrides import assignments, value_text
+from quintet.coupler.scene.quantity_texts import units_of_keys
 from quintet.coupler.scene.read import load
 from quintet.coupler.scene.scene import Scene
 from quintet.coupler.scene.sweep_axes import Axis, label
@@ -75,20 +76,19 @@ def _in_si(settings: Mapping[str, Any], scene: Scene) -> dict[str, Any]:
 
 
 def axes_of_jobs(axes: Sequence[Axis], jobs: Sequence[Job]) -> list[Axis]:
-    """Axes with the values of the runs: of texts with units the numbers."""
-    return [
-        Axis(
-            axis.path,
-            tuple(
-                {
-                    value_text(job.settings[axis.path]): job.settings[axis.path] for job in jobs
-                }.values()
-            ),
-        )
-        if has_quantities(axis.values)
-        else axis
-        for axis in axes
-    ]
+    """Axes with the units of their keys and the values of the runs: of texts with units numbers."""
+    name, preset, settings, swaps, transport = jobs[0].asked
+    words = [*settings, *assignments(jobs[0].settings)]
+    scene = load(name, preset, words, swaps, transport)
+    units = units_of_keys(scene, [axis.path for axis in axes])
+    return [Axis(axis.path, _values(axis, jobs), units.get(axis.path, "")) for axis in axes]
+
+
+def _values(axis: Axis, jobs: Sequence[Job]) -> tuple[Any, ...]:
+    if not has_quantities(axis.values):
+        return axis.values
+    values = [job.settings[axis.path] for job in jobs]
+    return tuple({value_text(value): value for value in values}.values())
 
 
 def _check(scene: Scene, jobs: int) -> None:

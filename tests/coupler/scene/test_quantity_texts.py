@@ -12,6 +12,7 @@ import pytest
 from quintet.coupler.cli import main
 from quintet.coupler.reference.schema import scene_schema
 from quintet.coupler.scene.overrides import assignments
+from quintet.coupler.scene.quantity_texts import units_of_keys
 from quintet.coupler.scene.read import library, load, load_variants
 from quintet.interfaces import libraries
 from quintet.interfaces.errors import SceneError
@@ -152,3 +153,11 @@ def test_a_number_that_ends_in_an_underscore_is_refused(capsys):
     assert ended.value.code == 2
     said = capsys.readouterr().err
     assert "scene.window should be a valid number or 'auto'; found '2_kg'. Correct it." in said
+
+
+def test_units_of_keys_are_those_of_the_parameters():
+    paths = ("window", "components.water.density", "components.water.gravity", "scheme", "unknown")
+    units = units_of_keys(load(SCENE), paths)
+    assert units == {
+        "window": "s", "components.water.density": "kg/m3", "components.water.gravity": "m/s2",
+    }  # fmt: skip

@@ -85,12 +85,19 @@ def test_nothing_is_run_twice_and_a_map_is_drawn(tmp_path, capsys):
 
 
 def test_a_search_that_was_ended_says_so():
-    limit = {"name": "step", "against": None, "found": 0.2, "broke": "energy", "how": "it rose"}
+    limit = {
+        "name": "step",
+        "parameter": "step",
+        "against": None,
+        "found": 0.2,
+        "broke": "energy",
+        "how": "it rose",
+    }
     limit |= {"predicted": None, "ratio": None, "degraded": None, "state": "unstable"}
     for complete, words in ((True, "step: energy: it rose"), (False, "interrupted after 2 runs")):
-        screen = Console(file=StringIO(), width=200)
-        print_limits([limit | {"complete": complete, "runs": [{}, {}]}], screen)
-        assert words in screen.file.getvalue()
+        screen = Console(file=StringIO(), width=200, markup=False)
+        print_limits([limit | {"complete": complete, "runs": [{}, {}]}], {"step": "s"}, screen)
+        assert words in screen.file.getvalue() and "step [s]" in screen.file.getvalue()
 
 
 def test_limits_of_other_settings_are_not_replaced(tmp_path, capsys):
@@ -114,7 +121,9 @@ def test_a_run_that_was_killed_from_outside_is_no_verdict(tmp_path):
     assert not (tmp_path / "runs" / VERDICTS).exists()
     found = summary(search, None, False)
     assert found["found"] is None and not found["complete"]
-    assert draw_maps("spring", [found | {"against": {"mass": 1.0}}], tmp_path / "map.png") is None
+    assert (
+        draw_maps("spring", [found | {"against": {"mass": 1.0}}], {}, tmp_path / "map.png") is None
+    )
 
 
 def test_limits_of_all_scenes_make_a_table(tmp_path, monkeypatch, capsys):
