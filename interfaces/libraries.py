@@ -16,6 +16,7 @@ EXTRAS = {
     "imageio_ffmpeg": "views3d",
     "optuna": "calibrate",
     "pint": "units",
+    "pyopencl": "opencl",
 }  # by the name that is imported
 
 

@@ -1,0 +1,138 @@
+"""OpenCL devices of this machine, by the names that scenes give them.
+
+pyopencl is loaded where a device is first asked for, and by nothing else.
+"""
+
+import importlib
+import time
+import warnings
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from quintet.components.shared.opencl.prelude import Precision
+from quintet.interfaces.errors import SceneError
+from quintet.interfaces.libraries import require
+
+NO_DEVICE = (
+    "no OpenCL device was found. Install the driver of yours (its file .icd belongs into "
+    "/etc/OpenCL/vendors), or PoCL, which computes on the processor: pip install 'quintet[opencl]'."
+)
+COPIED = 1 << 26  # floats in the test of bandwidth, 268 MB; fewer where memory is short
+ROUNDS = 5
+COPY = """
+__kernel void copy(__global const float *from, __global float *to) {
+    const size_t i = get_global_id(0);
+    to[i] = from[i];
+}
+"""
+
+
+def opencl() -> Any:
+    """Load pyopencl, or raise a `SceneError` that says how to install it."""
+    require("pyopencl", "a component on a device")
+    return importlib.import_module("pyopencl")
+
+
+@dataclass(frozen=True, slots=True)
+class Device:
+    """One OpenCL device.
+
+    Parameters
+    ----------
+    number : int
+        In ``opencl:number``.
+    handle : pyopencl.Device
+    """
+
+    number: int
+    handle: Any
+
+    @property
+    def name(self) -> str:
+        """As its driver calls it, with the platform and its version."""
+        platform = self.handle.platform
+        return f"{self.handle.name.strip()} ({platform.name.strip()}, {platform.version.strip()})"
+
+    @property
+    def memory(self) -> int:
+        """Its memory [bytes]."""
+        return int(self.handle.global_mem_size)
+
+    @property
+    def has_doubles(self) -> bool:
+        """Whether it computes in double precision."""
+        return "cl_khr_fp64" in self.handle.extensions.split()
+
+    @property
+    def is_processor(self) -> bool:
+        """Whether it is the processor that this program runs on."""
+        return bool(self.handle.type & opencl().device_type.CPU)
+
+    def queue(self) -> Any:
+        """Make a queue of commands, in a context of its own."""
+        cl = opencl()
+        return cl.CommandQueue(cl.Context([self.handle]))
+
+
+def devices() -> list[Device]:
+    """All devices, in the order of their platforms; none if there is no platform."""
+    cl = opencl()
+    try:
+        platforms = cl.get_platforms()
+    except cl.LogicError:  # the loader knows no driver
+        return []
+    handles = [handle for platform in platforms for handle in platform.get_devices()]
+    return [Device(number, handle) for number, handle in enumerate(handles)]
+
+
+def device_of(name: str) -> Device:
+    """Return the device that a scene names, ``opencl`` or ``opencl:number``.
+
+    Raises
+    ------
+    SceneError
+        If pyopencl is not installed, or there is no such device.
+    """
+    _, _, number = name.partition(":")
+    known = devices()
+    if not known:
+        raise SceneError(f"device {name}: {NO_DEVICE}")
+    if int(number or 0) >= len(known):
+        raise SceneError(
+            f"device {name}: there must be one of this number; found {len(known)}, from opencl:0 "
+            "on. `quintet devices` lists them."
+        )
+    return known[int(number or 0)]
+
+
+def build(queue: Any, text: str, precision: Precision = "double") -> Any:
+    """Compile a program for the device of a queue; quotients and roots are rounded correctly."""
+    cl, (device,) = opencl(), queue.context.devices
+    options = ["-cl-std=CL1.2"]
+    exact = cl.device_fp_config.CORRECTLY_ROUNDED_DIVIDE_SQRT
+    if precision == "single" and device.single_fp_config & exact:
+        options.append("-cl-fp32-correctly-rounded-divide-sqrt")
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", cl.CompilerWarning)  # drivers tell that they compiled
+        return cl.Program(queue.context, text).build(options)
+
+
+def bandwidth(device: Device) -> float:
+    """Bytes that a device reads and writes per second [1/s], copying: the best of some rounds."""
+    cl, queue = opencl(), device.queue()
+    count = min(COPIED, device.memory // 16, int(device.handle.max_mem_alloc_size) // 4)
+    flags = cl.mem_flags.READ_WRITE
+    first, second = (cl.Buffer(queue.context, flags, size=4 * count) for _ in range(2))
+    zero = np.zeros(1, np.float32)
+    for each in (first, second):  # memory is there once it was written
+        cl.enqueue_fill_buffer(queue, each, zero, 0, 4 * count)
+    kernel, best = build(queue, COPY).copy, 0.0
+    queue.finish()
+    for _ in range(ROUNDS):
+        start = time.perf_counter()
+        kernel(queue, (count,), None, first, second)
+        queue.finish()
+        best = max(best, 8 * count / (time.perf_counter() - start))
+    return best

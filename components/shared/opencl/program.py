@@ -1,0 +1,166 @@
+"""A program of OpenCL C: structs and laws, each printed once for every set of types."""
+
+import ast
+import builtins
+import inspect
+import textwrap
+from types import FunctionType
+from typing import Any
+
+from quintet.components.shared.opencl.expressions import Expressions
+from quintet.components.shared.opencl.names import function_name, identifier
+from quintet.components.shared.opencl.prelude import (
+    Precision,
+    power_function,
+    prelude,
+)
+from quintet.components.shared.opencl.refusal import Place
+from quintet.components.shared.opencl.statements import INDENT, Statements, locals_of
+from quintet.components.shared.opencl.types import NONE, Record, Row, Type, type_of
+
+
+class Program:
+    """Laws in OpenCL C.
+
+    Parameters
+    ----------
+    precision : "double" or "single"
+        Of all floats; whole numbers have 64 bits.
+
+    Examples
+    --------
+    >>> from quintet.components.shared.smoothing.cubic_spline import shape
+    >>> program = Program("double")
+    >>> program.add(shape, 0.0)[0]
+    'cubic_spline_shape'
+    """
+
+    def __init__(self, precision: Precision = "double") -> None:
+        self.precision: Precision = precision
+        self._functions: dict[tuple[Any, tuple[Type, ...]], tuple[str, Type]] = {}
+        self._records: dict[Record, Record] = {}
+        self._used: set[str] = set()
+        self._structs: dict[str, str] = {}
+        self._powers: dict[tuple[str, int], str] = {}
+        self._printed: list[str] = []
+        self._open: list[FunctionType] = []  # being printed
+
+    def add(self, function: Any, *arguments: Any) -> tuple[str, Type]:
+        """Print a law and the laws that it calls, unless they are there.
+
+        Parameters
+        ----------
+        function : function
+            Of Python, or as numba compiles it.
+        *arguments
+            An example of each, of which the types count, and which fields are None.
+
+        Returns
+        -------
+        str, Type
+            Its name in C, and the type of its value. Arguments that are None are left out of calls.
+
+        Raises
+        ------
+        PrintError
+            With file, line, construct and what to do.
+        """
+        python: FunctionType = getattr(function, "py_func", function)
+        kinds = tuple(self.add_type(type_of(each)) for each in arguments)
+        if (python, kinds) not in self._functions:
+            self._functions[python, kinds] = self._print(python, kinds)
+        return self._functions[python, kinds]
+
+    def add_power(self, kind: str, exponent: int) -> None:
+        """Print a function that raises to a whole power."""
+        self._powers[kind, exponent] = power_function(kind, exponent)
+
+    def add_type(self, kind: Type) -> Type:
+        """Print the struct of a type, and those of its fields; return it by its name in C."""
+        if isinstance(kind, Row):
+            kind = Row(tuple(map(self.add_type, kind.items)))
+            fields = [(f"f{number}", each) for number, each in enumerate(kind.items)]
+            self._add_struct(kind.name, fields)
+            return kind
+        if not isinstance(kind, Record):
+            return kind
+        if kind in self._records:
+            return self._records[kind]
+        named = tuple((name, self.add_type(each)) for name, each in kind.fields)
+        record = Record(self._free_name(kind.name), named)
+        self._add_struct(record.name, list(record.stored))
+        self._records[kind] = self._records[record] = record
+        return record
+
+    @property
+    def text(self) -> str:
+        """The whole program, without kernels."""
+        parts = [*self._structs.values(), *self._powers.values(), *self._printed]
+        return "\n\n".join([prelude(self.precision), *parts]) + "\n"
+
+    def _free_name(self, name: str) -> str:
+        """Return a name that is not used yet."""
+        number, free = 1, name
+        while free in self._used:
+            number += 1
+            free = f"{name}_{number}"
+        self._used.add(free)
+        return free
+
+    def _add_struct(self, name: str, fields: list[tuple[str, Type]]) -> None:
+        if name not in self._structs:
+            lines = [f"{INDENT}{each.name} {identifier(field)};" for field, each in fields]
+            body = "\n".join(line for line in lines if " none " not in line)
+            self._structs[name] = f"typedef struct {{\n{body}\n}} {name};"
+
+    def _print(self, function: FunctionType, kinds: tuple[Type, ...]) -> tuple[str, Type]:
+        definition, place = _parsed(function)
+        if function in self._open:
+            raise place.refuse(
+                definition, f"{function.__name__}, which calls itself", "Write a loop."
+            )
+        parameters = [each.arg for each in definition.args.args]
+        if len(parameters) != len(kinds) or _has_more(definition.args):
+            raise place.refuse(
+                definition, f"{len(kinds)} arguments for `{ast.unparse(definition.args)}`",
+                "Pass one value for each parameter, by position and without defaults.",
+            )  # fmt: skip
+        types = dict(zip(parameters, kinds, strict=True))
+        expressions = Expressions(self, place, _names_outside(function), types)
+        statements = Statements(expressions, set(parameters))
+        self._open.append(function)
+        body = statements.print(definition.body)
+        self._open.pop()
+        assert statements.returned is not None
+        name = self._free_name(function_name(function))
+        used = [each for each in parameters if types[each] != NONE]
+        given = ", ".join(f"{types[each].name} {identifier(each)}" for each in used)
+        head = f"static inline {statements.returned.name} {name}({given}) {{"
+        lines = [head, *locals_of(types, set(parameters)), *body, "}"]
+        self._printed.append("\n".join(lines))
+        return name, statements.returned
+
+
+def _parsed(function: FunctionType) -> tuple[ast.FunctionDef, Place]:
+    """Syntax tree of a function, and where it stands."""
+    file = inspect.getsourcefile(function) or "?"
+    lines, first = inspect.getsourcelines(function)
+    place = Place(file, first, function.__name__)
+    try:
+        (tree,) = ast.parse(textwrap.dedent("".join(lines))).body
+    except (SyntaxError, ValueError):
+        tree = ast.Pass()
+    if not isinstance(tree, ast.FunctionDef):
+        raise place.refuse(None, "a lambda, or no function", "Define it with def.")
+    return tree, place
+
+
+def _has_more(arguments: ast.arguments) -> bool:
+    """Whether a function has parameters that cannot be passed by position."""
+    return bool(arguments.vararg or arguments.kwarg or arguments.kwonlyargs)
+
+
+def _names_outside(function: FunctionType) -> dict[str, Any]:
+    """What names outside of a function stand for: of what encloses it, of its module, of Python."""
+    outside = inspect.getclosurevars(function).nonlocals
+    return {**vars(builtins), **function.__globals__, **outside}

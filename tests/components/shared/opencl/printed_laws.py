@@ -1,0 +1,171 @@
+"""Runs a law on random arguments twice: as numba compiles it, and printed, on an OpenCL device."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+import numpy as np
+from numba import njit
+
+from quintet.components.shared.opencl.devices import build, device_of, opencl
+from quintet.components.shared.opencl.program import Program
+from quintet.components.shared.opencl.types import (
+    NONE,
+    NUMBERS,
+    REAL,
+    Record,
+    Row,
+    Type,
+    type_of,
+)
+
+ROWS = 300
+
+
+class Between(NamedTuple):
+    """A random argument; `logarithmic`: as many in each decade."""
+
+    low: float
+    high: float
+    logarithmic: bool = False
+
+
+def vector(size: float) -> tuple[Between, ...]:
+    """Return three numbers, each as large as `size` at most."""
+    return (Between(-size, size),) * 3
+
+
+@dataclass
+class Law:
+    """A law and its arguments: numbers, tuples and named tuples, some of them random.
+
+    `ulp` is how far results may be apart, in units of the last place of the larger one; 0: none.
+    """
+
+    function: Any
+    arguments: tuple[Any, ...]
+    ulp: int = 0
+    name: str = field(default="")
+
+    def __post_init__(self) -> None:
+        python = getattr(self.function, "py_func", self.function)
+        module = python.__module__.removeprefix("quintet.components.")
+        self.name = f"{module}.{python.__name__}{self.name}"
+
+
+def example(argument: Any) -> Any:
+    """Return the argument with numbers in place of random ones."""
+    if isinstance(argument, Between):
+        return argument.low
+    return mapped(example, argument) if isinstance(argument, tuple) else argument
+
+
+def mapped(function: Callable[[Any], Any], values: Any) -> Any:
+    """Apply a function to the items of a (named) tuple."""
+    items = map(function, values)
+    return type(values)(*items) if hasattr(values, "_fields") else tuple(items)
+
+
+def drawn(argument: Any, random: np.random.Generator) -> Any:
+    """Draw the random parts of an argument."""
+    if isinstance(argument, Between):
+        low, high, logarithmic = argument
+        if logarithmic:
+            return float(np.exp(random.uniform(np.log(low), np.log(high))))
+        return float(random.uniform(low, high))
+    if isinstance(argument, tuple):
+        return mapped(lambda each: drawn(each, random), argument)
+    return argument
+
+
+def leaves(value: Any) -> Iterator[float]:
+    """Numbers of a value, in the order in which structs have them."""
+    if isinstance(value, tuple):
+        for each in value:
+            yield from leaves(each)
+    elif value is not None:
+        yield float(value)
+
+
+def compiled(law: Any) -> Any:
+    """Compile a law by numba without liberties: sums are not reordered."""
+    options = getattr(law, "targetoptions", {})
+    if options.get("cache") and not options.get("fastmath") and not options.get("inline"):
+        if not options.get("no_cpython_wrapper"):
+            return law
+    return njit(error_model="numpy")(getattr(law, "py_func", law))
+
+
+def of_numba(law: Law, rows: list[tuple[Any, ...]]) -> np.ndarray:
+    """Results (rows, numbers) as numba computes them."""
+    function = compiled(law.function)
+    return np.array([list(leaves(function(*row))) for row in rows])
+
+
+def of_device(laws: list[Law], drawn_rows: list[list[Any]], precision: str = "double") -> list[Any]:
+    """Results (rows, numbers) of each law as the device computes them, of one program."""
+    cl, queue = opencl(), device_of("opencl").queue()
+    program, kernels, real = Program(precision), [], np.float64  # type: ignore[arg-type]
+    real = np.float64 if precision == "double" else np.float32
+    widths = []
+    for number, law in enumerate(laws):
+        name, kind = program.add(law.function, *map(example, law.arguments))
+        text, width = kernel_of(program, law, name, kind, number)
+        kernels.append(text)
+        widths.append(width)
+    compiled_program = build(queue, program.text + "\n".join(kernels), precision)
+    results = []
+    for number, rows in enumerate(drawn_rows):
+        inputs = np.array([list(leaves(row)) for row in rows], real)
+        outputs = np.empty((len(rows), widths[number]), real)
+        flags = cl.mem_flags
+        given = cl.Buffer(queue.context, flags.READ_ONLY | flags.COPY_HOST_PTR, hostbuf=inputs)
+        taken = cl.Buffer(queue.context, flags.WRITE_ONLY, size=outputs.nbytes)
+        getattr(compiled_program, f"run_{number}")(queue, (len(rows),), None, given, taken)
+        cl.enqueue_copy(queue, outputs, taken)
+        results.append(outputs)
+    return results
+
+
+def kernel_of(program: Program, law: Law, name: str, kind: Type, number: int) -> tuple[str, int]:
+    """Print a kernel that calls a law for a row of arguments; tell how many numbers it gives."""
+    kinds = [program.add_type(type_of(example(each))) for each in law.arguments]
+    place = iter(range(10**6))
+    codes = [struct(each, place) for each in kinds if each != NONE]
+    inputs = next(place)
+    fields = list(paths(kind, "value"))
+    stores = "".join(f"    out[{len(fields)} * i + {k}] = {f};\n" for k, f in enumerate(fields))
+    text = (
+        f"__kernel void run_{number}(__global const real *in, __global real *out) {{\n"
+        f"    const size_t i = get_global_id(0);\n    in += {inputs} * i;\n"
+        f"    const {kind.name} value = {name}({', '.join(codes)});\n{stores}}}\n"
+    )
+    return text, len(fields)
+
+
+def struct(kind: Type, place: Iterator[int]) -> str:
+    """Code that makes an argument from the next numbers of the input."""
+    if kind in NUMBERS:
+        number = f"in[{next(place)}]"
+        return number if kind == REAL else f"({kind.name}){number}"
+    assert isinstance(kind, Row | Record)
+    parts = kind.items if isinstance(kind, Row) else [each for _, each in kind.stored]
+    return f"(({kind.name}){{{', '.join(struct(each, place) for each in parts)}}})"
+
+
+def paths(kind: Type, path: str) -> Iterator[str]:
+    """Code of each number of a value."""
+    if isinstance(kind, Row | Record):
+        numbered = [(f"f{k}", each) for k, each in enumerate(getattr(kind, "items", ()))]
+        for name, each in kind.stored if isinstance(kind, Record) else numbered:
+            yield from paths(each, f"{path}.{name}")
+    else:
+        yield path
+
+
+def ulps(first: np.ndarray, second: np.ndarray) -> float:
+    """Largest difference, in units of the last place of the larger of two numbers."""
+    same = (first == second) | (np.isnan(first) & np.isnan(second))
+    first, second = first[~same], second[~same]
+    unit = np.spacing(np.maximum(np.abs(first), np.abs(second)))
+    return float((np.abs(first - second) / unit).max(initial=0.0))
