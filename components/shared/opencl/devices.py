@@ -70,10 +70,18 @@ class Device:
         """Whether it is the processor that this program runs on."""
         return bool(self.handle.type & opencl().device_type.CPU)
 
-    def queue(self) -> Any:
-        """Make a queue of commands, in a context of its own."""
-        cl = opencl()
-        return cl.CommandQueue(cl.Context([self.handle]))
+    def queue(self, threads: int = 0) -> Any:
+        """Make a queue of commands, in a context of its own.
+
+        `threads` is how many cores of a processor it may use; 0: all. Other devices are used whole.
+        """
+        cl, handle = opencl(), self.handle
+        if threads and self.is_processor and threads < handle.max_compute_units:
+            (handle,) = handle.create_sub_devices(
+                [cl.device_partition_property.BY_COUNTS, threads,
+                 cl.device_partition_property.BY_COUNTS_LIST_END]
+            )  # fmt: skip
+        return cl.CommandQueue(cl.Context([handle]))
 
 
 def devices() -> list[Device]:

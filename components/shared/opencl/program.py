@@ -71,6 +71,10 @@ class Program:
             self._functions[python, kinds] = self._print(python, kinds)
         return self._functions[python, kinds]
 
+    def struct(self, example: Any) -> str:
+        """Name in C of the struct of a (named) tuple, which is printed."""
+        return self.add_type(type_of(example)).name
+
     def add_power(self, kind: str, exponent: int) -> None:
         """Print a function that raises to a whole power."""
         self._powers[kind, exponent] = power_function(kind, exponent)

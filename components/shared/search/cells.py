@@ -78,17 +78,24 @@ def grid_between(lowest: Points, highest: Points, reach: float) -> Grid:
     return Grid(x, y, z, 1.0 / width, nx, ny, nz, *axes)
 
 
+@njit(inline="always")
+def cell_of(first, second, third, grid):  # type: ignore[no-untyped-def]
+    """Cell of a point [m] along the grid's axes; one past the last cell for points outside."""
+    x = (first - grid.x) * grid.per_metre
+    y = (second - grid.y) * grid.per_metre
+    z = (third - grid.z) * grid.per_metre
+    # Compared before they are rounded: a far point's cell need not fit an integer.
+    inside = 0.0 <= x < grid.nx and 0.0 <= y < grid.ny and 0.0 <= z < grid.nz
+    last = grid.nx * grid.ny * grid.nz
+    return int(x) + grid.nx * (int(y) + grid.ny * int(z)) if inside else last
+
+
 @njit(**EXACT)
 def number_cells(points: Points, grid: Grid, cell: Whole) -> None:
     """Write the cell of each point (n, 3 or more); one past the last cell for points outside."""
-    outside = grid.nx * grid.ny * grid.nz
     for i in range(points.shape[0]):
-        x = (points[i, grid.first] - grid.x) * grid.per_metre
-        y = (points[i, grid.second] - grid.y) * grid.per_metre
-        z = (points[i, grid.third] - grid.z) * grid.per_metre
-        # Compared before they are rounded: a far point's cell need not fit an integer.
-        inside = 0.0 <= x < grid.nx and 0.0 <= y < grid.ny and 0.0 <= z < grid.nz
-        cell[i] = int(x) + grid.nx * (int(y) + grid.ny * int(z)) if inside else outside
+        first, second, third = grid.first, grid.second, grid.third
+        cell[i] = cell_of(points[i, first], points[i, second], points[i, third], grid)
 
 
 @njit(**EXACT)

@@ -1,0 +1,58 @@
+"""Arrays in the memory of a device, and runs of kernels over rows of them."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import DTypeLike, NDArray
+
+from quintet.components.shared.opencl.devices import opencl
+
+GROUP = 64  # work items that a device runs together
+
+
+class DeviceArray:
+    """An array (n, ...) in a device's memory.
+
+    Parameters
+    ----------
+    queue : pyopencl.CommandQueue
+    shape : tuple of int
+    dtype : numpy dtype
+    """
+
+    def __init__(self, queue: Any, shape: tuple[int, ...], dtype: DTypeLike = np.float64) -> None:
+        self.queue, self.shape, self.dtype = queue, shape, np.dtype(dtype)
+        cl = opencl()
+        size = max(int(np.prod(shape)) * self.dtype.itemsize, self.dtype.itemsize)
+        self.memory = cl.Buffer(queue.context, cl.mem_flags.READ_WRITE, size=size)
+
+    @classmethod
+    def of(cls, queue: Any, array: NDArray[Any]) -> "DeviceArray":
+        """Copy an array to the device."""
+        copy = cls(queue, array.shape, array.dtype)
+        copy.put(array)
+        return copy
+
+    def put(self, array: NDArray[Any]) -> None:
+        """Write an array of the same shape."""
+        if array.size:
+            whole = np.ascontiguousarray(array, self.dtype)
+            opencl().enqueue_copy(self.queue, self.memory, whole, is_blocking=True)
+
+    def get(self) -> NDArray[Any]:
+        """Read the array."""
+        array: NDArray[Any] = np.empty(self.shape, self.dtype)
+        if array.size:
+            opencl().enqueue_copy(self.queue, array, self.memory, is_blocking=True)
+        return array
+
+
+def run(queue: Any, kernel: Any, rows: int, *arguments: Any) -> None:
+    """Run a kernel for at least so many rows; it must pass over those beyond them."""
+    if rows:
+        items = -(-rows // GROUP) * GROUP
+        kernel(queue, (items,), (GROUP,), *(_plain(each) for each in arguments))
+
+
+def _plain(argument: Any) -> Any:
+    return argument.memory if isinstance(argument, DeviceArray) else argument

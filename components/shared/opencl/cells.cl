@@ -1,0 +1,109 @@
+/* Points sorted by cell, and lists of neighbours; Grid and cells_cell_of are printed. */
+
+#define ROW 0xffffffffL /* of a key: the row that a point had; above it stands its cell */
+
+/* Key of each of `count` points from row `first` on; keys beyond them sort last. */
+__kernel void number_rows(
+    __global const double4 *position, int first, int count, Grid grid, __global long *key)
+{
+    const int k = get_global_id(0);
+    if (k >= count) {
+        key[k] = LONG_MAX;
+        return;
+    }
+    const double4 r = position[first + k];
+    const double along[3] = {r.x, r.y, r.z};
+    const long cell =
+        cells_cell_of(along[grid.first], along[grid.second], along[grid.third], grid);
+    key[k] = (cell << 32) | (first + k);
+}
+
+/* A pass of Batcher's bitonic sort over keys, a power of two; keys are all different. */
+__kernel void sort_pass(__global long *key, int size, int distance)
+{
+    const int i = get_global_id(0), j = i ^ distance;
+    if (j < i) return;
+    const long a = key[i], b = key[j];
+    if ((a > b) == ((i & size) == 0)) {
+        key[i] = b;
+        key[j] = a;
+    }
+}
+
+/* Where each cell starts among sorted points; `start` has two more than there are cells. */
+__kernel void start_cells(
+    __global const long *key, int count, long cells, int base, __global int *start)
+{
+    const int k = get_global_id(0);
+    if (k > count) return;
+    const long from = k ? (key[k - 1] >> 32) + 1 : 0, to = k < count ? key[k] >> 32 : cells + 1;
+    for (long cell = from; cell <= to; cell++) start[cell] = base + k;
+}
+
+/* Greatest of each column over a part of the rows. */
+__kernel void greatest(__global const double4 *rows, int count, __global double4 *part)
+{
+    double4 most = -INFINITY;
+    for (int i = get_global_id(0); i < count; i += get_global_size(0)) {
+        const double4 row = rows[i];
+        most = row > most ? row : most;
+    }
+    part[get_global_id(0)] = most;
+}
+
+/* Neighbours among a range of points that the keys of a group begin to count at. */
+static int add_near(
+    double4 r, int cx, int cy, int cz, Grid grid, __global const int *start,
+    __global const double4 *position, double reach2, int width, size_t place, size_t stride,
+    int count, __global int *near)
+{
+    const int low = max(cx - REACH, 0), high = min(cx + REACH, (int)grid.nx - 1);
+    for (int kz = max(cz - REACH, 0); kz <= min(cz + REACH, (int)grid.nz - 1); kz++)
+        for (int ky = max(cy - REACH, 0); ky <= min(cy + REACH, (int)grid.ny - 1); ky++) {
+            const long row = grid.nx * (ky + grid.ny * kz);
+            const int end = start[row + high + 1];
+            for (int j = start[row + low]; j < end; j++) {
+                const double4 d = r - position[j];
+                if (d.x * d.x + d.y * d.y + d.z * d.z < reach2) {
+                    if (count < width) near[place + stride * count] = j;
+                    count++;
+                }
+            }
+        }
+    return count;
+}
+
+/* List what is nearer than a reach: for the first group of both, for others of the first alone.
+
+   Others look from a point of their own. Rows whose lists are too short count on: the greatest
+   count tells how long they must be. */
+__kernel void search(
+    __global const double4 *position, __global const double *look, int split, int count, Grid grid,
+    __global const int *start_one, __global const int *start_two, double reach2, int width,
+    long row_stride, long item_stride, __global int *near, __global int *middle,
+    __global int *end, __global double4 *extremes)
+{
+    const int i = get_global_id(0);
+    if (i >= count) return;
+    double4 r = position[i];
+    if (i >= split && look) r.xyz = vload3(i - split, look);
+    const double along[3] = {r.x, r.y, r.z};
+    const long cell =
+        cells_cell_of(along[grid.first], along[grid.second], along[grid.third], grid);
+    int found = 0;
+    middle[i] = 0;
+    if (cell < grid.nx * grid.ny * grid.nz) {
+        const int cx = cell % grid.nx, cy = cell / grid.nx % grid.ny, cz = cell / grid.nx / grid.ny;
+        const size_t place = (size_t)i * row_stride;
+        found = add_near(
+            r, cx, cy, cz, grid, start_one, position, reach2, width, place, item_stride, found,
+            near);
+        middle[i] = found;
+        if (i < split)
+            found = add_near(
+                r, cx, cy, cz, grid, start_two, position, reach2, width, place, item_stride, found,
+                near);
+    }
+    end[i] = found;
+    extremes[i] = (double4)(found, 0, 0, 0);
+}

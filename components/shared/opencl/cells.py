@@ -1,0 +1,117 @@
+"""Points of a device sorted by cell, and their neighbour lists, as `shared/search` makes them.
+
+The order is that of `search.cells.sort_cells`, a stable one, whatever the device: keys of cell and
+row are all different. A bitonic sort has no atomic operations and needs no memory beside the keys.
+"""
+
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from quintet.components.shared.opencl.arrays import GROUP, DeviceArray, run
+from quintet.components.shared.opencl.program import Program
+from quintet.components.shared.opencl.types import bytes_of
+from quintet.components.shared.search.cells import REACH, Grid, cell_of
+
+SOURCE = Path(__file__).with_name("cells.cl")
+PARTS = 256  # of rows, of which each work item finds the greatest
+GRID = Grid(0.0, 0.0, 0.0, 1.0, 1, 1, 1, 0, 1, 2)  # of the types that every one has
+FEWEST = 32  # neighbours that lists have room for at first
+
+
+def source(program: Program) -> str:
+    """Print the laws of cells; return the kernels."""
+    program.add(cell_of, 0.0, 0.0, 0.0, GRID)
+    return f"#define REACH {REACH}\n{SOURCE.read_text()}"
+
+
+class NearLists(NamedTuple):
+    """Neighbour lists on a device: row i has its k-th at i row_stride + k item_stride."""
+
+    near: DeviceArray
+    middle: DeviceArray  # (n,) how many are of the first group
+    end: DeviceArray  # (n,) how many there are
+    row_stride: np.int64
+    item_stride: np.int64
+
+
+class Cells:
+    """Sorting and searching on one device.
+
+    Parameters
+    ----------
+    queue : pyopencl.CommandQueue
+    kernels : pyopencl.Program
+        Built from a program that has `source`.
+    by_rows : bool
+        Whether the lists of a row stand together, as processors read them.
+    """
+
+    def __init__(self, queue: Any, kernels: Any, by_rows: bool) -> None:
+        self.queue, self.by_rows, self.width = queue, by_rows, FEWEST
+        self._number_rows, self._sort_pass = kernels.number_rows, kernels.sort_pass
+        self._start_cells, self._greatest = kernels.start_cells, kernels.greatest
+        self._search = kernels.search
+        self._parts = DeviceArray(queue, (PARTS, 4))
+
+    def greatest(self, rows: DeviceArray, count: int) -> NDArray[np.float64]:
+        """Greatest (4,) of each column of `count` rows (n, 4)."""
+        arguments = (rows.memory, np.int32(count), self._parts.memory)
+        self._greatest(self.queue, (PARTS,), (GROUP,), *arguments)
+        greatest: NDArray[np.float64] = self._parts.get().max(axis=0)
+        return greatest
+
+    def sorted_keys(
+        self, position: DeviceArray, first: int, count: int, grid: Grid
+    ) -> DeviceArray:
+        """Keys (any,) of `count` rows from `first` on, by cell and then by row."""
+        size = max(1 << (count - 1).bit_length(), GROUP)
+        key = DeviceArray(self.queue, (size,), np.int64)
+        numbers = (np.int32(first), np.int32(count), bytes_of(grid, np.float64), key)
+        run(self.queue, self._number_rows, size, position, *numbers)
+        block = 2
+        while block <= size:
+            distance = block >> 1
+            while distance:
+                run(self.queue, self._sort_pass, size, key, np.int32(block), np.int32(distance))
+                distance >>= 1
+            block <<= 1
+        return key
+
+    def starts(self, key: DeviceArray, first: int, count: int, grid: Grid) -> DeviceArray:
+        """Rows (cells + 2,) where each cell starts, of sorted rows from `first` on."""
+        start = DeviceArray(self.queue, (grid.cells + 2,), np.int32)
+        numbers = (np.int32(count), np.int64(grid.cells), np.int32(first), start)
+        run(self.queue, self._start_cells, count + 1, key, *numbers)
+        return start
+
+    def lists(
+        self, position: DeviceArray, look: DeviceArray | None, split: int, count: int, grid: Grid,
+        starts: tuple[DeviceArray, DeviceArray], reach: float, extremes: DeviceArray,
+    ) -> NearLists:  # fmt: skip
+        """List what is nearer than a reach [m], of rows sorted by cell.
+
+        Parameters
+        ----------
+        position : (n, 4) array, m
+        look : (n - split, 3) array, m, or None
+            Places that look in place of rows from `split` on; these look for the first alone.
+        extremes : (n, 4) array
+            Written.
+        """
+        middle, end = (DeviceArray(self.queue, (count,), np.int32) for _ in range(2))
+        while True:
+            by_rows = (self.width, 1) if self.by_rows else (1, count)
+            row_stride, item_stride = map(np.int64, by_rows)
+            near = DeviceArray(self.queue, (count * self.width,), np.int32)
+            run(
+                self.queue, self._search, count, position, look, np.int32(split), np.int32(count),
+                bytes_of(grid, np.float64), *starts, np.float64(reach * reach),
+                np.int32(self.width), row_stride, item_stride, near, middle, end, extremes,
+            )  # fmt: skip
+            longest = int(self.greatest(extremes, count)[0])
+            if longest <= self.width:
+                return NearLists(near, middle, end, row_stride, item_stride)
+            self.width = longest + longest // 8

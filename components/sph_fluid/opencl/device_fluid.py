@@ -1,0 +1,174 @@
+"""The fluid as a component whose steps run on an OpenCL device.
+
+All but the steps is that of `SphFluid`, whose state the rows are copied into where it is read:
+gauges, totals, views, snapshots. Between these only four numbers a step leave the device.
+"""
+
+from dataclasses import replace
+
+from quintet.components.shared.opencl.devices import device_of
+from quintet.components.shared.search.verlet_list import slack
+from quintet.components.sph_fluid import MANIFEST, diagnostics, judgement
+from quintet.components.sph_fluid.component import LOADS, SphFluid
+from quintet.components.sph_fluid.mass_balance.losses import refuse_many_lost
+from quintet.components.sph_fluid.opencl.refusal import refuse_what_needs_the_processor
+from quintet.components.sph_fluid.opencl.stepping import Stepping
+from quintet.components.sph_fluid.params import SphFluidParams
+from quintet.components.sph_fluid.ports import SHOWS
+from quintet.components.sph_fluid.setup.tait import TAIT
+from quintet.interfaces.component import ONE_THREAD, Component, Fields, Keys, Resources, Totals
+from quintet.interfaces.errors import SceneError
+
+
+class DeviceFluid(Component):
+    """A weakly compressible fluid between walls that stand, on a device."""
+
+    Params: type[SphFluidParams] = SphFluidParams
+
+    manifest = MANIFEST
+    shows = SHOWS
+    compiles = True
+
+    def __init__(self, params: SphFluidParams, resources: Resources = ONE_THREAD) -> None:
+        refuse_what_needs_the_processor(params, resources.device)
+        device = device_of(resources.device)
+        if not device.has_doubles:
+            raise SceneError(
+                f"device {resources.device}: it must compute in double precision, in which the "
+                f"state of a fluid is kept; {device.name} does not. Choose another of those that "
+                "`quintet devices` lists."
+            )
+        self.params, (self.takes, self.gives) = params, self.ports_of(params)
+        self.host = SphFluid(params, replace(resources, device="cpu"))
+        self.stepping = Stepping(params, device, resources.threads, self.host.lists.reach)
+        self.skin = self.host.lists.reach - self.host.lists.cutoff
+        self._put()
+
+    def describe(self) -> Fields:
+        """Request how surfaces are to be sampled."""
+        return self.host.describe()
+
+    def bind(self, static: Fields, joined: Keys) -> None:
+        """Refuse surfaces."""
+        if "surface.volume" in static:
+            raise SceneError(
+                "a fluid on a device must have no links to bodies yet; found samples of surfaces. "
+                'Remove the links, or set device = "cpu".'
+            )
+
+    def stable_dt(self) -> float:
+        """Largest step [s], from the rates of the last one."""
+        return self.host.stable_dt()
+
+    def take(self, fields: Fields) -> None:
+        """Nothing to take: there are no surfaces."""
+
+    def step(self, dt: float) -> None:
+        """Advance by dt [s]."""
+        state = self.host.state
+        if len(state.reference) == 0 or slack(self.skin, state.moved) < 0.0:
+            self._sort()
+            state = self.host.state
+        if state.steps % judgement.EVERY == 0:
+            self._get()
+            is_alone = self.params.boundary.is_still
+            totals = self.host.totals()
+            judgement.note(state, self.params, totals, is_alone, self.host.all_ranks)
+        extremes = self.stepping.step(state, dt)
+        self._is_read = self._is_listed = False
+        if extremes.failed:
+            self._get()
+            raise diagnostics.failure(state, self.params, dt, self.host.all_ranks)
+        state.moved = extremes.moved
+        state.largest_acceleration, state.largest_approach = extremes[:2]
+        state.last_dt, state.steps = dt, state.steps + 1
+
+    def _sort(self) -> None:
+        """Bring near rows together and list neighbours: on the host where fluid left the tank."""
+        rows, state = self.stepping.rows, self.host.state
+        low, high, densest, is_outside = rows.survey()
+        if densest > self.params.density * (1.0 + TAIT * diagnostics.MACH) ** (1.0 / TAIT):
+            self._get()
+            diagnostics.refuse_dense(state, self.params, self.host.all_ranks)
+        if is_outside:
+            self._get()
+            self.host.lists.sort(state)
+            refuse_many_lost(state, self.params)
+            self._put()
+        else:
+            rows.sort(low, high, state)
+            self.stepping.centre(low, high)
+        self._is_read = self._is_listed = False
+
+    def _put(self) -> None:
+        """Copy the host's state to the device."""
+        state = self.host.state
+        self.stepping.rows.put(state)
+        self.stepping.resize()
+        if len(state.reference):
+            points = state.reference[: state.fluid]
+            self.stepping.centre(points.min(axis=0), points.max(axis=0))
+        self._is_read, self._is_listed = True, False
+
+    def _get(self) -> None:
+        """Copy the rows into the host's state, unless they are there."""
+        if not self._is_read:
+            self.stepping.rows.get(self.host.state)
+            self._is_read = True
+
+    def check(self) -> None:
+        """Refuse a particle whose velocity is not finite."""
+        self._get()
+        self.host.check()
+
+    def give(self, wanted: Keys) -> Fields:
+        """Copy out what gauges read now."""
+        if not wanted:
+            return {}
+        if not wanted <= LOADS:
+            self._get()
+            if not self._is_listed:
+                self.host.renew_lists()
+                self._is_listed = True
+        return self.host.give(wanted)
+
+    def save(self) -> Fields:
+        """Copy out all state, as a fluid on the processor has it."""
+        self._get()
+        return self.host.save()
+
+    def load(self, state: Fields) -> None:
+        """Come back to a saved state, of a fluid on the processor or on a device."""
+        self.host.load(state)
+        self._put()
+
+    def begin_from(self, state: Fields) -> None:
+        """Begin from the state of another run."""
+        self.host.begin_from(state)
+        self._put()
+
+    def totals(self) -> Totals:
+        """Mass, momentum and energies of the fluid that is left."""
+        self._get()
+        return self.host.totals()
+
+    def view(self) -> Fields:
+        """Fluid particles in the order of their birth."""
+        self._get()
+        return self.host.view()
+
+    def notes(self) -> tuple[str, ...]:
+        """What was not as a scene may have meant it."""
+        return self.host.notes()
+
+    def warnings(self) -> dict[str, str]:
+        """Compression, fluid that leaves its tank, and energy from nowhere."""
+        return self.host.warnings()
+
+    def walls(self) -> Fields:
+        """Return the tank's closed faces, and the obstacles in it."""
+        return self.host.walls()
+
+    def items(self) -> int:
+        """Fluid and wall particles."""
+        return self.host.items()

@@ -1,0 +1,68 @@
+"""Programs of a fluid: its laws, printed for the terms that a scene has, and loops over them."""
+
+from pathlib import Path
+from typing import Any
+
+from quintet.components.shared.opencl import cells
+from quintet.components.shared.opencl.prelude import Precision
+from quintet.components.shared.opencl.program import Program
+from quintet.components.shared.smoothing.smoothing import gradient, kernel
+from quintet.components.sph_fluid.boundary.kernels import mirrored_density
+from quintet.components.sph_fluid.integration.kernels import failed
+from quintet.components.sph_fluid.laws import (
+    PairLaw,
+    add_pair_force,
+    diffusive_flux,
+    inverses,
+    pressure_term,
+)
+
+HERE = Path(__file__).parent
+VECTOR = (0.0, 0.0, 0.0)
+SIX, TEN = (0.0,) * 6, (0.0,) * 10
+
+
+def rows_program(law: PairLaw, precision: Precision) -> str:
+    """Sorting, searching, walls and steps: always in double precision.
+
+    `precision` is that of the rates, of which steps are made.
+    """
+    program, constants = Program("double"), law.constants
+    search = cells.source(program)
+    fit = mirrored_density
+    names = [
+        _named(program, "pressure_term", pressure_term, 0.0, constants),
+        _named(program, "kernel_of", kernel, 0.0, constants.smoothing),
+        _named(program, "failed", failed, 0.0, 0.0, 0.0),
+        _named(program, "add_moments", fit.add_moments, TEN, 0.0, 0.0, 0.0, 0.0),
+        _named(program, "mean_and_variance", fit.mean_and_variance, TEN),
+        _named(program, "solve", fit.solve, SIX, 0.0, 0.0, 0.0),
+        _named(program, "distance_to", fit.distance, VECTOR, 0.0, 0.0, 0.0),
+        f"#define Moments {program.add(fit.mean_and_variance, TEN)[1].name}",
+        f"#define NO_FLUID {fit.NO_FLUID!r}",
+        f"#define RATE4 {'double4' if precision == 'double' else 'float4'}",
+    ]
+    return "\n".join([program.text, *names, search, (HERE / "rows.cl").read_text()])
+
+
+def pairs_program(law: PairLaw, precision: Precision) -> str:
+    """Sums over pairs, of the terms of a pair law, in either precision."""
+    program, constants = Program(precision), law.constants
+    force = (VECTOR, VECTOR, VECTOR, VECTOR, *(0.0,) * 6)
+    names = [
+        _named(program, "inverses", inverses, 0.0, 0.0, constants),
+        _named(program, "gradient", gradient, 0.0, 0.0, constants.smoothing),
+        _named(program, "fluid_force", add_pair_force, *force, law.fluid),
+        _named(program, "boundary_force", add_pair_force, *force, law.boundary),
+        f"#define FluidTerms {program.struct(law.fluid)}",
+        f"#define BoundaryTerms {program.struct(law.boundary)}",
+    ]
+    if law.fluid.diffusion.on is not None:
+        flux = (0.0, 0.0, 0.0, 0.0, law.fluid.diffusion)
+        names += ["#define DIFFUSION", _named(program, "diffusive_flux", diffusive_flux, *flux)]
+    return "\n".join([program.text, *names, (HERE / "pairs.cl").read_text()])
+
+
+def _named(program: Program, name: str, law: Any, *arguments: Any) -> str:
+    """Print a law, and let kernels call it by a name."""
+    return f"#define {name} {program.add(law, *arguments)[0]}"
