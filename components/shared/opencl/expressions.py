@@ -18,6 +18,7 @@ from quintet.components.shared.opencl.refusal import Place, PrintError
 from quintet.components.shared.opencl.types import (
     FLAG,
     INT,
+    LANES,
     NONE,
     NUMBERS,
     REAL,
@@ -36,6 +37,7 @@ ROUNDED_DOWN: dict[type[ast.operator], str] = {ast.FloorDiv: "floor_divide", ast
 COMPARED: dict[type[ast.cmpop], str] = {
     ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">=", ast.Eq: "==", ast.NotEq: "!=",
 }  # fmt: skip
+ONE_LANE = "Print it for one lane, or use min and max in place of branches."
 PASS_NUMBERS = "Pass what it needs as arguments, or write it out."
 
 
@@ -193,7 +195,9 @@ class Expressions:
             return self._power(left, right, node)
         kind = max(left.kind, right.kind, INT, key=NUMBERS.index)
         if isinstance(op, ast.Div):
-            kind = REAL
+            kind = max(kind, REAL, key=NUMBERS.index)
+        if kind == LANES and type(op) in ROUNDED_DOWN:
+            raise self.refuse(node, f"`{ast.unparse(node)}` of several lanes", ONE_LANE)
         if (type(op) in BITWISE and kind != INT) or isinstance(op, ast.MatMult):
             raise self.refuse(node, f"`{ast.unparse(node)}`", "Shift and mask whole numbers alone.")
         a, b = (converted(value, kind, self.program.precision).code for value in (left, right))
@@ -209,16 +213,17 @@ class Expressions:
                     node, f"`{ast.unparse(node)}`, a whole exponent that varies",
                     "Make the exponent a float, or write the products out.",
                 )  # fmt: skip
-            if base.kind != REAL and exponent.number < 0:
+            if base.kind in (FLAG, INT) and exponent.number < 0:
                 raise self.refuse(
                     node, f"`{ast.unparse(node)}`, a whole number to a negative power",
                     "Make the number a float.",
                 )  # fmt: skip
-            kind = REAL if base.kind == REAL else INT
+            kind = max(base.kind, INT, key=NUMBERS.index)
             self.program.add_power(_c_name(kind), exponent.number)
             return Value(f"{power_name(_c_name(kind), exponent.number)}({base.code})", kind)
-        a, b = (converted(each, REAL, self.program.precision).code for each in (base, exponent))
-        return Value(f"pow({a}, {b})", REAL)
+        kind = max(base.kind, exponent.kind, REAL, key=NUMBERS.index)
+        a, b = (converted(each, kind, self.program.precision).code for each in (base, exponent))
+        return Value(f"pow({a}, {b})", kind)
 
     def _compare(self, node: ast.Compare) -> Value:
         if len(node.ops) == 1 and isinstance(node.ops[0], ast.Is | ast.IsNot):
@@ -230,6 +235,8 @@ class Expressions:
             if type(op) not in COMPARED or any(each.kind not in NUMBERS for each in pair):
                 raise self.refuse(node, f"`{ast.unparse(node)}`", "Compare numbers.")
             kind = max(pair[0].kind, pair[1].kind, key=NUMBERS.index)
+            if kind == LANES:
+                raise self.refuse(node, f"`{ast.unparse(node)}` of several lanes", ONE_LANE)
             a, b = (converted(each, kind, self.program.precision).code for each in pair)
             parts.append(f"({a} {COMPARED[type(op)]} {b})")
         return Value(parts[0] if len(parts) == 1 else f"({' && '.join(parts)})", FLAG)
@@ -304,6 +311,9 @@ class Expressions:
         if any(kind not in NUMBERS for kind in kinds):
             raise self.refuse(node, f"`{ast.unparse(node)}`, not of numbers", PASS_NUMBERS)
         precision = self.program.precision
+        in_lanes = LANES in kinds
+        if in_lanes and (function in TO_REAL or function in TO_INT or function in BITS):
+            raise self.refuse(node, f"`{ast.unparse(node)}` of several lanes", ONE_LANE)
         if function in TO_REAL:
             return converted(arguments[0], REAL, precision)
         if function in TO_INT:
@@ -324,6 +334,10 @@ class Expressions:
             )
         if len(takes) != len(arguments):
             raise self.refuse(node, f"`{ast.unparse(node)}`", f"Give it {len(takes)} arguments.")
+        if in_lanes:
+            if gives != REAL:
+                raise self.refuse(node, f"`{ast.unparse(node)}` of several lanes", ONE_LANE)
+            takes, gives = (LANES,) * len(takes), LANES
         pairs = zip(arguments, takes, strict=True)
         codes = ", ".join(converted(each, kind, precision).code for each, kind in pairs)
         return Value(f"{name}({codes})", gives)
@@ -340,4 +354,4 @@ class Expressions:
 
 
 def _c_name(kind: Type) -> str:
-    return "real" if kind == REAL else "long"
+    return kind.name if kind in (REAL, LANES) else "long"

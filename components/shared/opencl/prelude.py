@@ -46,14 +46,27 @@ static real floor_divide_real(real a, real b) {
 """
 
 
-def prelude(precision: Precision) -> str:
+IN_LANES = """
+static reals max_reals(reals a, reals b) { return b > a ? b : a; }
+static reals min_reals(reals a, reals b) { return b < a ? b : a; }
+"""
+
+
+def prelude(precision: Precision, lanes: int) -> str:
     """First lines of a program; products are never contracted with sums."""
-    return f"{REALS[precision]}#pragma OPENCL FP_CONTRACT OFF\n{OPERATIONS}"
+    of_lanes = f"typedef {precision_name(precision)}{lanes if lanes > 1 else ''} reals;\n"
+    exact = "#pragma OPENCL FP_CONTRACT OFF\n"
+    return f"{REALS[precision]}{of_lanes}{exact}{OPERATIONS}{IN_LANES}"
+
+
+def precision_name(precision: Precision) -> str:
+    """Type of a number in C."""
+    return {"double": "double", "single": "float"}[precision]
 
 
 def power_function(kind: str, exponent: int) -> str:
     """Function that raises to a whole power by squaring, multiplying in numba's order."""
-    one = "1L" if kind == "long" else "(real)1"
+    one = "1L" if kind == "long" else f"({kind})1"
     lines, rest = [], abs(exponent)
     while rest:
         if rest & 1:

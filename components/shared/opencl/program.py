@@ -26,6 +26,8 @@ class Program:
     ----------
     precision : "double" or "single"
         Of all floats; whole numbers have 64 bits.
+    lanes : 1, 4 or 8
+        How many numbers those of the type `LANES` are, which are computed at once.
 
     Examples
     --------
@@ -35,8 +37,9 @@ class Program:
     'cubic_spline_shape'
     """
 
-    def __init__(self, precision: Precision = "double") -> None:
+    def __init__(self, precision: Precision = "double", lanes: int = 1) -> None:
         self.precision: Precision = precision
+        self._lanes = lanes
         self._functions: dict[tuple[Any, tuple[Type, ...]], tuple[str, Type]] = {}
         self._records: dict[Record, Record] = {}
         self._used: set[str] = set()
@@ -100,7 +103,7 @@ class Program:
     def text(self) -> str:
         """The whole program, without kernels."""
         parts = [*self._structs.values(), *self._powers.values(), *self._printed]
-        return "\n\n".join([prelude(self.precision), *parts]) + "\n"
+        return "\n\n".join([prelude(self.precision, self._lanes), *parts]) + "\n"
 
     def _free_name(self, name: str) -> str:
         """Return a name that is not used yet."""

@@ -7,7 +7,16 @@ from typing import Any
 import numpy as np
 
 from quintet.components.shared.opencl.prelude import Precision
-from quintet.components.shared.opencl.types import FLAG, INT, NONE, REAL, Record, Row, Type
+from quintet.components.shared.opencl.types import (
+    FLAG,
+    INT,
+    LANES,
+    NONE,
+    REAL,
+    Record,
+    Row,
+    Type,
+)
 
 MOST_SINGLE = float(np.finfo(np.float32).max)
 LEAST_SINGLE = float(np.finfo(np.float32).tiny)
@@ -91,6 +100,8 @@ def converted(value: Value, kind: Type, precision: Precision) -> Value:
         return value
     if kind == REAL and value.number is not None:
         return literal(float(value.number), precision)
+    if kind == LANES:
+        return Value(f"(reals)({converted(value, REAL, precision).code})", kind)
     if isinstance(kind, Row):
         if value.items is None:
             raise ValueError

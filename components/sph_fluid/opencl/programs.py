@@ -6,6 +6,7 @@ from typing import Any
 from quintet.components.shared.opencl import cells
 from quintet.components.shared.opencl.prelude import Precision
 from quintet.components.shared.opencl.program import Program
+from quintet.components.shared.opencl.types import LANES
 from quintet.components.shared.smoothing.smoothing import gradient, kernel
 from quintet.components.sph_fluid.boundary.kernels import mirrored_density
 from quintet.components.sph_fluid.integration.kernels import failed
@@ -45,20 +46,21 @@ def rows_program(law: PairLaw, precision: Precision) -> str:
     return "\n".join([program.text, *names, search, (HERE / "rows.cl").read_text()])
 
 
-def pairs_program(law: PairLaw, precision: Precision) -> str:
+def pairs_program(law: PairLaw, precision: Precision, lanes: int) -> str:
     """Sums over pairs, of the terms of a pair law, in either precision."""
-    program, constants = Program(precision), law.constants
-    force = (VECTOR, VECTOR, VECTOR, VECTOR, *(0.0,) * 6)
+    program, constants = Program(precision, lanes), law.constants
+    force = ((LANES,) * 3, (LANES,) * 3, (LANES,) * 3, (LANES,) * 3, *(LANES,) * 6)
     names = [
-        _named(program, "inverses", inverses, 0.0, 0.0, constants),
-        _named(program, "gradient", gradient, 0.0, 0.0, constants.smoothing),
+        f"#define LANES {lanes}",
+        _named(program, "inverses", inverses, LANES, LANES, constants),
+        _named(program, "gradient", gradient, LANES, LANES, constants.smoothing),
         _named(program, "fluid_force", add_pair_force, *force, law.fluid),
         _named(program, "boundary_force", add_pair_force, *force, law.boundary),
         f"#define FluidTerms {program.struct(law.fluid)}",
         f"#define BoundaryTerms {program.struct(law.boundary)}",
     ]
     if law.fluid.diffusion.on is not None:
-        flux = (0.0, 0.0, 0.0, 0.0, law.fluid.diffusion)
+        flux = (*(LANES,) * 4, law.fluid.diffusion)
         names += ["#define DIFFUSION", _named(program, "diffusive_flux", diffusive_flux, *flux)]
     return "\n".join([program.text, *names, (HERE / "pairs.cl").read_text()])
 

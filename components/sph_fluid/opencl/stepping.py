@@ -18,6 +18,9 @@ from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.state import State
 
 
+LANES_OF_PROCESSORS = 4  # doubles in one of its vectors; other devices make lanes of rows
+
+
 class Extremes(NamedTuple):
     """What a step tells of all rows."""
 
@@ -45,7 +48,8 @@ class Stepping:
         self.precision: Precision = "double" if params.precision == "float64" else "single"
         law = pair_law(params)
         rows = build(self.queue, rows_program(law, self.precision))
-        pairs = build(self.queue, pairs_program(law, self.precision), self.precision)
+        lanes = LANES_OF_PROCESSORS if device.is_processor else 1
+        pairs = build(self.queue, pairs_program(law, self.precision, lanes), self.precision)
         self._rates, self._advance, self._narrow = pairs.rates, rows.advance, rows.narrow
         self._extrapolate = rows.extrapolate_density
         self.rows = DeviceState(self.queue, rows, params, reach, device.is_processor)
