@@ -135,7 +135,8 @@ class Resources:
         Of a component that owns several MPI ranks: all methods are called on all of them, and what
         rank 0 returns counts.
     device : str
-        Where it computes: "cpu".
+        Where it computes: "cpu", or "opencl:0" and so on, where its manifest names a component for
+        devices.
     """
 
     threads: int = 1

@@ -47,6 +47,7 @@ class BenchCase:
     static: Fields = field(default_factory=dict)  # what its partners tell it once
     fields: Fields = field(default_factory=dict)  # what it takes before each step
     series: str = ""  # that of cases that differ in their number of items alone
+    device: str = "cpu"  # on which it computes
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,12 +122,19 @@ class Manifest:
     patience: float = PATIENCE  # s, how long it may keep others waiting beyond three usual windows
     shows: tuple[Field, ...] = ()  # as of the component
     ranks: bool = False  # whether a component may own several MPI ranks
+    opencl: str = ""  # "module:Class" of a component that computes on OpenCL devices
 
-    def load(self) -> type[Any]:
-        """Import the solver itself; only the process that runs it does so."""
-        cls = resolve(self.component)
+    def load(self, device: str = "cpu") -> type[Any]:
+        """Import the solver itself, for a device; only the process that runs it does so."""
+        path = self.component if device == "cpu" else self.opencl
+        if not path:
+            raise SceneError(
+                f"kind {self.kind} must compute on the processor; found the device {device}. "
+                'Set device = "cpu".'
+            )
+        cls = resolve(path)
         if not (isinstance(cls, type) and issubclass(cls, Component)):
-            raise SceneError(f"kind {self.kind}: {self.component} is not a Component.")
+            raise SceneError(f"kind {self.kind}: {path} is not a Component.")
         return cls
 
     def cases(self) -> tuple[BenchCase, ...]:

@@ -106,4 +106,5 @@ MANIFEST = Manifest(
     conform="quintet.components.sph_fluid.conform:cases",
     shows=SHOWS,
     ranks=True,
+    opencl="quintet.components.sph_fluid.opencl.device_fluid:DeviceFluid",
 )

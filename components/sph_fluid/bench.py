@@ -14,6 +14,7 @@ import numpy as np
 
 from quintet.components.shared.smoothing.cubic_spline import SUPPORT
 from quintet.interfaces.component import Fields
+from quintet.interfaces.libraries import is_installed
 from quintet.interfaces.manifest import BenchCase
 
 SPACING = 0.01  # m
@@ -45,6 +46,16 @@ def cases() -> tuple[BenchCase, ...]:
         )
         for name, length in LENGTHS.items()
     ]
+    # Devices are measured where their library is installed.
+    on_devices = (
+        BenchCase(f"{name}, OpenCL", params, 10, 200, UNIT, device="opencl")
+        for name, params in (
+            ("dam break", dam),
+            ("dam break, 22k", small),
+            ("dam break, float32", dam | {"precision": "float32"}),
+        )
+        if is_installed("pyopencl")
+    )
     return (
         BenchCase("dam break", dam, 10, 600, UNIT, series="dam break"),
         BenchCase("dam break, 22k", small, 10, 600, UNIT, series="dam break"),
@@ -54,6 +65,7 @@ def cases() -> tuple[BenchCase, ...]:
         BenchCase("dam break, float32", dam | {"precision": "float32"}, 10, 600, UNIT),
         BenchCase("dam break, coupled", dam | {"fluid": NOTCHED}, 10, 600, UNIT, *cube()),
         *channels,
+        *on_devices,
     )
 
 

@@ -59,7 +59,7 @@ class MpiJob(Job):
 
 def measure(manifest: Manifest, case: BenchCase, threads: int, ranks: Job) -> dict[str, Any]:
     """Time one case; return its entry of ``quintet bench --json``."""
-    order = {"params": case.params, "threads": threads}
+    order = {"params": case.params, "threads": threads, "device": case.device}
     component = begin(manifest, order, case, ranks)
     advance(component, case.warm, case)
     del component

@@ -1,6 +1,8 @@
 """Commands that start no solver: list, check, describe, materials, schema."""
 
 import argparse
+import subprocess
+import sys
 import tempfile
 from pathlib import Path
 
@@ -39,11 +41,17 @@ def add_commands(command: Command) -> None:
     named = command("materials", materials, "list materials by name, with constants and sources")
     named.add_argument("name", nargs="?", default="", help="print the constants of this material")
     named.add_argument("--json", action="store_true", help="print JSON")
+    command("devices", devices, "list OpenCL devices: memory, double precision, bandwidth")
     editors = command("schema", schema, "print a JSON schema of scene files, for editors")
     editors.add_argument(
         "scene", nargs="?", help="scene whose kinds module:Class the schema includes"
     )
     editors.add_argument("--import", action="store_true", dest="imports", help=IMPORT)
+
+
+def devices(options: argparse.Namespace) -> int:
+    """List the OpenCL devices of this machine, in a process that loads their drivers."""
+    return subprocess.run([sys.executable, "-m", "quintet.components.shared.opencl"]).returncode
 
 
 def list_scenes(options: argparse.Namespace) -> int:

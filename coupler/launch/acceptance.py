@@ -24,6 +24,7 @@ def settings(scene: Scene, name: str) -> dict[str, Any]:
         "threads": plan.threads,
         "folder": str(scene.folder.resolve()),
         **({"starts": False} if plan.begun else {}),
+        **({"device": plan.device} if plan.device != "cpu" else {}),
     }
 
 

@@ -234,7 +234,7 @@ def scene_of(path: Path, transport: str) -> Scene:
 
 def check_same(scene: Scene, folder: Path, command: str = "--resume") -> None:
     """Refuse to go on with a scene that is not the one that began; cores may differ."""
-    before, now = _without_cores(parse(folder / "scene.toml")), _without_cores(scene.resolved)
+    before, now = _without_places(parse(folder / "scene.toml")), _without_places(scene.resolved)
     keys = [key for key in {**before, **now} if key not in FREE]
     for key in (key for key in keys if before.get(key) != now.get(key)):
         raise SceneError(
@@ -243,10 +243,11 @@ def check_same(scene: Scene, folder: Path, command: str = "--resume") -> None:
         )
 
 
-def _without_cores(scene: Mapping[str, Any]) -> dict[str, Any]:
-    """Return a scene without the keys by which components share work out: they change no bit."""
+def _without_places(scene: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a scene without the keys that say where components compute."""
+    places = ("ranks", "threads", "device")
     components = {
-        name: {key: value for key, value in table.items() if key not in ("ranks", "threads")}
+        name: {key: value for key, value in table.items() if key not in places}
         for name, table in scene["components"].items()
     }
     return {**scene, "components": components}

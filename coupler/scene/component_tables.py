@@ -1,5 +1,6 @@
 """``[components.NAME]``: kind and settings of each component, checked by its manifest."""
 
+import re
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import fields
 from pathlib import Path
@@ -15,6 +16,7 @@ from quintet.interfaces.manifest import Manifest, find, known_kinds, unknown_kin
 from quintet.interfaces.params import beyond_computing, read, shown
 
 Table = dict[str, Any]
+DEVICE = re.compile(r"opencl(:\d{1,4})?")
 Pair = tuple[tuple[str, str], tuple[str, str]]  # component and port of the giver, of the taker
 
 
@@ -158,6 +160,9 @@ def _component(
             f"{common.ranks}. Give it threads."
         )
         return None
+    if wrong_device := _wrong_device(where, common, manifest):
+        mistakes.append(wrong_device)
+        return None
     try:
         if partners and manifest.complete:
             keys = manifest.complete(keys, partners)
@@ -179,8 +184,32 @@ def _component(
         mistakes.append(f"{where}: kind {kind} cannot tell its ports from these settings ({said}).")
         return None
     return ComponentPlan(
-        name, kind, manifest, keys, params, takes, gives, common.threads, common.ranks, plan, begun
-    )
+        name, kind, manifest, keys, params, takes, gives, common.threads, common.ranks, plan, begun,
+        device=common.device,
+    )  # fmt: skip
+
+
+def _wrong_device(where: str, common: ComponentKeys, manifest: Manifest) -> str:
+    """Sentence about a device on which a component cannot compute; "" if it can."""
+    device = common.device
+    if device == "cpu":
+        return ""
+    if not DEVICE.fullmatch(device):
+        return (
+            f"{where}.device must be cpu, opencl, or opencl:0 and so on; found {shown(device)}. "
+            "`quintet devices` lists the devices of this machine."
+        )
+    if not manifest.opencl:
+        return (
+            f"{where}.device must be cpu, for kind {manifest.kind} computes on the processor; "
+            f"found {device}. Remove it."
+        )
+    if common.ranks > 1:
+        return (
+            f"{where}.ranks must be 1 on a device; found {common.ranks} and {device}. Remove one "
+            "of them."
+        )
+    return ""
 
 
 def _manifest(where: str, kind: str, mistakes: list[str]) -> Manifest | None:

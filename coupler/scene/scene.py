@@ -39,11 +39,15 @@ class ComponentKeys:
     ranks : 1
         MPI ranks, processes that share its work, if its kind can: over the transports zenoh, as a
         job of their own, and mpi.
+    device
+        Where it computes: cpu, or opencl:0 and so on, as `quintet devices` lists them; opencl is
+        the first.
     """
 
     kind: str
     threads: Annotated[int, pydantic.Field(ge=1, le=1024)] = 1
     ranks: Annotated[int, pydantic.Field(ge=1, le=65536)] = 1
+    device: str = "cpu"
 
 
 @parameters
@@ -210,6 +214,7 @@ class ComponentPlan:
     planned: Plan | None = None  # what running it will need, where its kind can tell
     begun: bool = False  # whether its state at the start is that of another run
     unread: bool = False  # its kind is code that was not imported: keys and ports are unknown
+    device: str = "cpu"  # as of `ComponentKeys`
 
     def initial(self) -> Fields:
         """What is known of it before it is built; see `Manifest`."""

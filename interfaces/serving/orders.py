@@ -53,6 +53,7 @@ OPTIONAL: dict[str, dict[str, Rule]] = {
     "go": {
         "folder": (lambda value: isinstance(value, str) and "\0" not in value, "a folder"),
         "starts": FLAG,
+        "device": (lambda value: isinstance(value, str) and value != "", "the name of a device"),
     },
     "begin": {"goes_on": FLAG},
     "bind": {

@@ -182,7 +182,8 @@ def build(manifest: Manifest, header: dict[str, Any], communicator: Any = None) 
     """Check the parameters, then import the solver and make the component."""
     check_order("go", header)
     folder = Path(header.get("folder", ""))
-    resources = Resources(int(header["threads"]), folder, communicator)
+    device = str(header.get("device", "cpu"))
+    resources = Resources(int(header["threads"]), folder, communicator, device)
     starts = bool(header.get("starts", True))
     params, mistakes = read(
         manifest.params, header["params"], manifest.kind, resources.folder, starts
@@ -190,7 +191,7 @@ def build(manifest: Manifest, header: dict[str, Any], communicator: Any = None) 
     if mistakes:
         raise SceneError(mistakes)
     notice("importing the solver")
-    solver = manifest.load()
+    solver = manifest.load(device)
     notice("building")
     return make(solver, params, resources)
 

@@ -31,7 +31,7 @@ __kernel void copy(__global const float *from, __global float *to) {
 
 def opencl() -> Any:
     """Load pyopencl, or raise a `SceneError` that says how to install it."""
-    require("pyopencl", "a component on a device")
+    require("pyopencl", "an OpenCL device")
     return importlib.import_module("pyopencl")
 
 
@@ -61,6 +61,11 @@ class Device:
         return int(self.handle.global_mem_size)
 
     @property
+    def units(self) -> int:
+        """Compute units, of a processor its cores."""
+        return int(self.handle.max_compute_units)
+
+    @property
     def has_doubles(self) -> bool:
         """Whether it computes in double precision."""
         return "cl_khr_fp64" in self.handle.extensions.split()
@@ -76,7 +81,7 @@ class Device:
         `threads` is how many cores of a processor it may use; 0: all. Other devices are used whole.
         """
         cl, handle = opencl(), self.handle
-        if threads and self.is_processor and threads < handle.max_compute_units:
+        if threads and self.is_processor and threads < self.units:
             (handle,) = handle.create_sub_devices(
                 [cl.device_partition_property.BY_COUNTS, threads,
                  cl.device_partition_property.BY_COUNTS_LIST_END]
