@@ -21,7 +21,7 @@ STOREYS = [
     *("interfaces", "interfaces/lines", "interfaces/serving"),
 ]
 
-ABOVE_COMPONENT = {"analysis"}  # sub-folders and files that drive the whole solver
+ABOVE_COMPONENT = {"analysis", "opencl"}  # sub-folders and files that drive the whole solver
 VAGUE = {"one", "found", "given", "made", "kept", "own"}
 
 

@@ -40,16 +40,18 @@ def _force_over_distance(law, square):  # type: ignore[no-untyped-def]
 
         return of_table
 
-    def of_roots(law, square):  # type: ignore[no-untyped-def]
-        x = math.sqrt(square) * law.per_metre
-        a, b, c, d, e, f, g = law.roots
-        product = (x - a) * (x - b) * (x - c) * (x - d) * (x - e) * (x - f) * (x - g)
-        for _ in range(len(law.factors)):
-            product *= x - law.base
-        step = falling_step((x - law.begin) * law.per_width)
-        return law.strength * law.per_metre * product * step / x
+    return force_of_roots
 
-    return of_roots
+
+def force_of_roots(law, square):  # type: ignore[no-untyped-def]
+    """Seven-root force over the distance [N/m], from the squared distance [m2]."""
+    x = math.sqrt(square) * law.per_metre
+    a, b, c, d, e, f, g = law.roots
+    product = (x - a) * (x - b) * (x - c) * (x - d) * (x - e) * (x - f) * (x - g)
+    for _ in range(len(law.factors)):
+        product *= x - law.base
+    step = falling_step((x - law.begin) * law.per_width)
+    return law.strength * law.per_metre * product * step / x
 
 
 def pair_energy(law: Any, square: float) -> float:
@@ -94,11 +96,13 @@ def damping_weight(damping: Any, r: float) -> float:
 
 @overload(damping_weight, inline="always")
 def _damping_weight(damping, r):  # type: ignore[no-untyped-def]
-    def weight(damping, r):  # type: ignore[no-untyped-def]
-        u = (r * damping.per_metre - damping.begin) * damping.per_width
-        return damping.coefficient * falling_step(u)
+    return weight_of_damping
 
-    return weight
+
+def weight_of_damping(damping, r):  # type: ignore[no-untyped-def]
+    """Coefficient of damping along a pair [kg/s] at a distance [m]."""
+    u = (r * damping.per_metre - damping.begin) * damping.per_width
+    return damping.coefficient * falling_step(u)
 
 
 @njit(**EXACT)

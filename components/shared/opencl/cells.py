@@ -63,9 +63,7 @@ class Cells:
         greatest: NDArray[np.float64] = self._parts.get().max(axis=0)
         return greatest
 
-    def sorted_keys(
-        self, position: DeviceArray, first: int, count: int, grid: Grid
-    ) -> DeviceArray:
+    def sorted_keys(self, position: DeviceArray, first: int, count: int, grid: Grid) -> DeviceArray:
         """Keys (any,) of `count` rows from `first` on, by cell and then by row."""
         size = max(1 << (count - 1).bit_length(), GROUP)
         key = DeviceArray(self.queue, (size,), np.int64)

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from quintet.components.shared.opencl.names import identifier
 from quintet.components.shared.opencl.prelude import Precision
 from quintet.components.shared.opencl.types import (
     FLAG,
@@ -50,7 +51,7 @@ class Value:
             number %= len(self.kind.items)
             return Value(f"{self.code}.f{number}", self.kind.items[number])
         name, kind = self.kind.fields[number]
-        return Value("" if kind == NONE else f"{self.code}.{name}", kind)
+        return Value("" if kind == NONE else f"{self.code}.{identifier(name)}", kind)
 
 
 def literal(number: Any, precision: Precision) -> Value:

@@ -17,7 +17,6 @@ from quintet.components.sph_fluid.opencl.programs import pairs_program, rows_pro
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.state import State
 
-
 LANES_OF_PROCESSORS = 4  # doubles in one of its vectors; other devices make lanes of rows
 
 

@@ -2,12 +2,15 @@
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
+from types import FunctionType
 from typing import Any, NamedTuple
 
 import numpy as np
 from numba import njit
+from numba.core.dispatcher import Dispatcher
 
 from quintet.components.shared.opencl.devices import build, device_of, opencl
+from quintet.components.shared.opencl.names import identifier
 from quintet.components.shared.opencl.program import Program
 from quintet.components.shared.opencl.types import (
     NONE,
@@ -88,12 +91,24 @@ def leaves(value: Any) -> Iterator[float]:
 
 
 def compiled(law: Any) -> Any:
-    """Compile a law by numba without liberties: sums are not reordered."""
-    options = getattr(law, "targetoptions", {})
-    if options.get("cache") and not options.get("fastmath") and not options.get("inline"):
-        if not options.get("no_cpython_wrapper"):
-            return law
-    return njit(error_model="numpy")(getattr(law, "py_func", law))
+    """Compile a law by numba, and those that it calls, without liberties: no sum is reordered."""
+    python = getattr(law, "py_func", law)
+    if python not in _compiled:
+        names = python.__code__.co_names
+        laws = {
+            name: compiled(python.__globals__[name])
+            for name in names
+            if isinstance(python.__globals__.get(name), Dispatcher)
+            and python.__globals__[name].py_func is not python  # a field may have its name
+        }
+        strict = FunctionType(
+            python.__code__, {**python.__globals__, **laws}, closure=python.__closure__
+        )
+        _compiled[python] = njit(error_model="numpy")(strict)
+    return _compiled[python]
+
+
+_compiled: dict[Any, Any] = {}
 
 
 def of_numba(law: Law, rows: list[tuple[Any, ...]]) -> np.ndarray:
@@ -158,7 +173,7 @@ def paths(kind: Type, path: str) -> Iterator[str]:
     if isinstance(kind, Row | Record):
         numbered = [(f"f{k}", each) for k, each in enumerate(getattr(kind, "items", ()))]
         for name, each in kind.stored if isinstance(kind, Record) else numbered:
-            yield from paths(each, f"{path}.{name}")
+            yield from paths(each, f"{path}.{identifier(name)}")
     else:
         yield path
 

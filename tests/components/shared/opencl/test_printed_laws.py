@@ -1,0 +1,206 @@
+"""Laws of all solvers, printed for a device, have the bits that numba gives them.
+
+The exceptions call transcendental functions, which PoCL rounds otherwise than the C library does:
+`ulp` holds by how much.
+"""
+
+import importlib
+import inspect
+
+import numpy as np
+import pytest
+
+pytest.importorskip("pyopencl")
+from printed_laws import ROWS, Between, Law, drawn, of_device, of_numba, ulps, vector
+
+from quintet.components.dem_bodies import laws as dem
+from quintet.components.fe_plate import laws as plate
+from quintet.components.meshless_gas.laws import fluxes, limiters, transport
+from quintet.components.particle_dynamics import laws as lattice
+from quintet.components.particle_dynamics.coefficients import PairDamping, SevenRoots
+from quintet.components.particle_dynamics.spheres import laws as spheres
+from quintet.components.shared import elementary, rotations
+from quintet.components.shared.contact import laws as contact
+from quintet.components.shared.materials import equation_of_state as state
+from quintet.components.shared.materials import fracture, strength
+from quintet.components.shared.materials.solid import Solid
+from quintet.components.shared.opencl.program import Program
+from quintet.components.shared.opencl.refusal import PrintError
+from quintet.components.shared.search.cells import Grid, cell_of
+from quintet.components.shared.smoothing import cubic_spline, wendland
+from quintet.components.shared.smoothing import smoothing as smooth
+from quintet.components.sph_fluid import laws as fluid
+from quintet.components.sph_fluid.boundary.kernels import mirrored_density as mirrored
+from quintet.components.sph_fluid.integration.kernels import failed
+from quintet.components.sph_solid import laws as solid
+
+ANY, PART, LARGE = Between(-1.0, 1.0), Between(0.01, 1.0), Between(0.5, 2.0)
+SIX, NINE, TEN = (ANY,) * 6, (ANY,) * 9, (PART,) * 10
+NEAR = Between(0.0, 5e-3)  # m2
+CUBIC, WENDLAND = (smooth.smoothing(name, 3, 0.03) for name in smooth.KERNELS)
+DENSITY = Between(900.0, 1100.0)
+CONSTANTS = fluid.Constants(0.008, CUBIC, 9e-6, 1000.0, 1e6, 0.0, 0.0)
+CALM = CONSTANTS._replace(smoothing=WENDLAND, lowest=-np.inf)
+DIFFUSION = fluid.DensityDiffusion(True, ANY, ANY, ANY, ANY)
+CONTACT = fluid.ContactPotential(True, True, PART, 1e-5, 1.0, 0.0, 1.0)
+REPULSION = fluid.WallRepulsion(True, 1e3, 2e-3)
+NO_DIFFUSION = fluid.DensityDiffusion(None, 0.0, 0.0, 0.0, 0.0)
+LAPLACIAN, STRESS, NONE = (
+    fluid.KinematicViscosity(on, stress, 1e-3)
+    for on, stress in ((True, None), (True, True), (None, None))
+)
+TERMS = fluid.PairTerms(0.5, NONE, DIFFUSION, REPULSION._replace(on=None), CONTACT, None, None)
+PAIR = (*(vector(1.0),) * 4, NEAR, ANY, ANY, ANY, PART, PART)
+SOLID = solid.PairLaw(WENDLAND, 9e-6, 1.0, 2.0, 1.0, True, 0.3, 1e-5)
+METAL = Solid(
+    2700.0, 27e9, 77e9, True, 2.9e7, 1.34, 0.1, 0.0, 2.0, 0.5, 3e8, 4e8, 0.34, 0.01, 1.7, 1.0,
+    300.0, 600.0, 1e-7, -1e9, 0.5, 0.1, 0.2, -1.5, 0.01, 0.5, 300.0, 900.0, -1.0, 0.01, None,
+)  # fmt: skip
+STRAINED = (Between(-0.1, 0.3), Between(0.0, 1e5), Between(1e6, 1e9), METAL)
+PLACES = (1.0, 1.2, 1.4, 1.6, 1.7, 2.0, 2.2)
+ROOTS = SevenRoots(1.5, 10.0, PLACES, 1.0, (1.0,) * 3, 1.8, 5.0, 2.0, None, None)
+GAS = transport.Transport(1.7e-5, 273.0, 110.0, 1400.0, 287.0)
+GRID = Grid(-1.0, -1.0, -1.0, 7.3, 9, 11, 13, 1, 2, 0)
+MODULUS = Between(1e9, 1e11)
+SPHERE = (LARGE, LARGE, LARGE, MODULUS, MODULUS, PART, Between(1e-6, 1e-3), ANY)
+TOUCHING = (
+    (PART,) * 7, vector(1.0), PART, vector(1.0), PART, (PART,) * 3, PART, vector(1.0), vector(1.0),
+    PART,
+)  # fmt: skip
+
+LAWS = [
+    Law(cubic_spline.shape, (Between(0.0, 2.5),)),
+    Law(cubic_spline.slope, (Between(0.0, 2.5),)),
+    Law(wendland.shape, (Between(0.0, 2.5),)),
+    Law(wendland.slope, (Between(0.0, 2.5),)),
+    Law(smooth.kernel, (NEAR, CUBIC)),
+    Law(smooth.gradient, (NEAR, LARGE, WENDLAND)),
+    Law(smooth.gradient, (NEAR, LARGE, CUBIC), name=" of the cubic spline"),
+    Law(smooth.with_length, (CUBIC, PART, 3)),
+    Law(fluid.tait, (DENSITY, CONSTANTS)),
+    Law(fluid.tait, (DENSITY, CALM), name=" below zero"),
+    Law(fluid.pressure_term, (DENSITY, CALM)),
+    Law(fluid.inverses, (NEAR, DENSITY, CALM)),
+    Law(fluid.pair_pressure, (ANY, ANY, PART, TERMS)),
+    Law(fluid.diffusive_flux, (ANY, ANY, ANY, ANY, DIFFUSION)),
+    Law(fluid.repulsion_force, (NEAR, REPULSION)),
+    Law(fluid.contact_factor, (NEAR, PART, CONTACT, CUBIC)),
+    Law(fluid.add_pair_force, (*PAIR, TERMS)),
+    Law(fluid.add_pair_force, (*PAIR, TERMS._replace(viscosity=LAPLACIAN)), name=", Laplacian"),
+    Law(
+        fluid.add_pair_force, (*PAIR, TERMS._replace(viscosity=STRESS, repulsion=REPULSION)),
+        name=", stress and repulsion",
+    ),
+    Law(mirrored.distance, (vector(1.0), ANY, ANY, ANY)),
+    Law(mirrored.add_moments, (TEN, PART, ANY, ANY, ANY)),
+    Law(mirrored.mean_and_variance, (TEN,)),
+    Law(mirrored.solve, (SIX, ANY, ANY, ANY)),
+    Law(failed, (Between(-1.0, 1000.0), PART, PART)),
+    Law(cell_of, (Between(-1.5, 0.5), Between(-1.5, 0.5), Between(-1.5, 1.0), GRID)),
+    Law(solid.inverses, (NEAR, DENSITY, SOLID)),
+    Law(solid.viscous_pressure, (PART, DENSITY, PART, DENSITY, SOLID)),
+    Law(solid.nearness, (NEAR, SOLID)),
+    Law(solid.inverse, (SIX, SOLID)),
+    Law(solid.times, (NINE, SIX)),
+    Law(state.reference_pressure, (STRAINED[0], METAL)),
+    Law(state.fractions, (STRAINED[0], METAL)),
+    Law(state.pressure_and_energy, (STRAINED[0], STRAINED[1], Between(-1e-5, 1e-5), METAL)),
+    Law(state.sound_speed_squared, STRAINED),
+    Law(strength.turned_and_strained, (SIX, NINE, LARGE, PART)),
+    Law(strength.equivalent, (SIX,)),
+    Law(strength.softening, (Between(200.0, 1000.0), METAL)),
+    Law(strength.flow_stress, (PART, Between(0.1, 1e4, True), PART, METAL)),
+    Law(fracture.greatest_principal, (SIX, ANY), ulp=8),
+    Law(fracture.is_torn, (SIX, ANY, PART)),
+    Law(fracture.damage_growth, (SIX, ANY, PART, Between(200.0, 800.0), PART, METAL), ulp=3),
+    Law(plate.to_middle, (NINE, PART)),
+    Law(plate.strain_rate, (NINE,)),
+    Law(plate.deviatoric_power, (SIX, SIX, NINE)),
+    Law(plate.damping_power, (NINE, METAL)),
+    Law(elementary.logarithm, (Between(1e-9, 1e9, True),)),
+    Law(elementary.exponential, (Between(-100.0, 100.0),)),
+    Law(elementary.logarithm_of_few_digits, (Between(1e-9, 1e9, True),)),
+    Law(elementary.exponential_of_few_digits, (Between(-100.0, 100.0),)),
+    Law(elementary.power, (LARGE, ANY)),
+    Law(rotations.product, ((ANY,) * 4, (ANY,) * 4)),
+    Law(rotations.exponential, vector(2.0), ulp=2),
+    Law(rotations.exponential, vector(3e-4), name=" of a small turn"),
+    Law(rotations.rotated, ((ANY,) * 4, ANY, ANY, ANY), ulp=19),
+    Law(rotations.matrix, ((ANY,) * 4,)),
+    Law(rotations.to_world, (NINE, ANY, ANY, ANY)),
+    Law(rotations.to_body, (NINE, ANY, ANY, ANY)),
+    Law(rotations.cross, (vector(1.0), vector(1.0))),
+    Law(rotations.scaled, (ANY, vector(1.0))),
+    Law(dem.pair_constants, (LARGE,) * 6),
+    Law(dem.first_step_weight, (PART,), ulp=2),
+    Law(dem.rotate_tangential_force, (vector(1.0), vector(1.0), PART)),
+    Law(dem.limit_friction, (vector(1.0), vector(1.0), PART, PART)),
+    Law(dem.damping_weight, (0.0, PART, LARGE, LARGE), ulp=2),
+    Law(dem.contact_force, TOUCHING),
+    Law(dem.limit_rolling, (vector(1.0), vector(1.0), PART)),
+    Law(contact.layer_law, (PART,) * 5),
+    Law(contact.sphere_law, SPHERE, ulp=2),
+    Law(contact.in_series, (PART, PART)),
+    Law(contact.hertz_stiffness, (PART, PART, PART)),
+    Law(contact.deepest_overlap, (PART,) * 5, ulp=1),
+    Law(lattice.falling_step, (Between(-0.5, 1.5),)),
+    Law(lattice.force_of_roots, (ROOTS, Between(0.005, 0.06))),
+    Law(lattice.weight_of_damping, (PairDamping(2.0, 10.0, 1.0, 3.0), PART)),
+    Law(spheres.unit, (vector(1.0), LARGE)),
+    Law(spheres.past, (vector(1.0), vector(1.0), vector(1.0), PART)),
+    Law(spheres.time_since_contact, (vector(0.5), vector(1.0), vector(0.1), Between(1.0, 2.0))),
+    Law(spheres.impact_of_spheres, (vector(0.5), vector(1.0), vector(0.1), LARGE, PART, PART)),
+    Law(spheres.impact_on_wall, (PART, LARGE, ANY, LARGE, PART, PART)),
+    Law(fluxes.smoothness, (PART, PART, PART, PART, PART)),
+    Law(fluxes.ausmpw, (PART, ANY, PART, PART, ANY, PART, PART, 1.4)),
+    Law(fluxes.wall_pressure, (PART, Between(-3.0, 3.0), 1.4)),
+    *(Law(law, (ANY, ANY, 0.1)) for law in (
+        limiters.van_albada, limiters.minmod, limiters.van_leer, limiters.koren, limiters.superbee,
+    )),
+    Law(transport.sutherland, (Between(100.0, 2000.0), GAS), ulp=4),
+]  # fmt: skip
+MODULES = {inspect.getmodule(getattr(law.function, "py_func", law.function)) for law in LAWS}
+LAW_FILES = [each for each in MODULES if each.__name__.split(".")[-1] == "laws"]
+# Laws that cannot be printed, and why: they read or write arrays, or choose a law by its type.
+NOT_PURE = {
+    "change_stiffness", "friction", "force_over_distance", "pair_energy", "damping_weight",
+    "force", "energy",
+}  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def results():
+    random = np.random.default_rng(11)
+    rows = [
+        [tuple(drawn(each, random) for each in law.arguments) for _ in range(ROWS)] for law in LAWS
+    ]
+    printed = of_device(LAWS, rows)
+    return {
+        law.name: (law.ulp, of_numba(law, given), values)
+        for law, given, values in zip(LAWS, rows, printed, strict=True)
+    }
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", [law.name for law in LAWS])
+def test_printed_laws_have_the_bits_of_numba(results, name):
+    ulp, of_processor, printed = results[name]
+    assert np.isfinite(of_processor).all()
+    assert ulps(of_processor, printed) <= ulp
+
+
+def test_every_law_is_tried_or_is_not_pure():
+    tried = {getattr(law.function, "py_func", law.function) for law in LAWS}
+    for module in LAW_FILES:
+        for name, law in vars(module).items():
+            python = getattr(law, "py_func", law)
+            if inspect.isfunction(python) and python.__module__ == module.__name__:
+                assert python in tried or name in NOT_PURE or name.startswith("_"), name
+
+
+@pytest.mark.parametrize("name", ["change_stiffness", "friction"])
+def test_a_law_that_changes_arrays_is_refused(name):
+    law = getattr(importlib.import_module("quintet.components.shared.contact.laws"), name)
+    parameters = inspect.signature(law.py_func).parameters
+    with pytest.raises(PrintError, match=r"no tuple|index that varies|in the kernel"):
+        Program().add(law, *(0.0 for _ in parameters))

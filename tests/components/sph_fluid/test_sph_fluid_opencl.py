@@ -1,0 +1,179 @@
+"""A fluid on an OpenCL device is the fluid of the processor, to rounding."""
+
+import subprocess
+import sys
+from copy import deepcopy
+
+import numpy as np
+import pytest
+from fluid_params import fluid_params
+
+from quintet.components.sph_fluid.component import SphFluid
+from quintet.interfaces.component import Resources
+from quintet.interfaces.errors import SceneError
+
+pytest.importorskip("pyopencl")
+from quintet.components.sph_fluid.opencl.device_fluid import DeviceFluid
+from quintet.components.sph_fluid.opencl.refusal import refuse_what_needs_the_processor
+
+MIRRORED = {
+    "spacing": 0.05,
+    "sound_speed": 20.0,
+    "dimensions": 2,
+    "kernel": "wendland",
+    "density_diffusion": 0.1,
+    "negative_pressure": True,
+    "fluid": [{"shape": "box", "lowest": [0.0, 0.0, 0.0], "highest": [0.3, 1.0, 0.4]}],
+    "viscosity": {"artificial": 0.1},
+    "boundary": {
+        "method": "mdbc",
+        "walls": {"lowest": [0.0, 0.0, 0.0], "highest": [0.8, 1.0, 0.6]},
+    },
+    "gauges": {"front_gauge": "x", "motion_gauge": True, "pressure_gauges": [[0.1, 0.5, 0.1]]},
+}
+DYNAMIC = {
+    "spacing": 0.1,
+    "sound_speed": 40.0,
+    "fluid": [{"shape": "box", "lowest": [0.0, 0.0, 0.0], "highest": [0.5, 0.5, 0.5]}],
+    "viscosity": {"artificial": 0.1},
+    "boundary": {
+        "method": "dbc",
+        "walls": {"lowest": [0.0, 0.0, 0.0], "highest": [1.0, 0.5, 0.8]},
+    },
+}
+DEVICE = Resources(device="opencl")
+
+
+def params_of(table):
+    return fluid_params(**deepcopy(table))
+
+
+def advanced(fluid, steps):
+    for _ in range(steps):
+        fluid.step(fluid.stable_dt())
+    return fluid
+
+
+def difference(first, second, name):
+    a, b = first.view()[name], second.view()[name]
+    return np.abs(a - b).max() / np.abs(a).max()
+
+
+@pytest.mark.parametrize(("table", "steps"), [(MIRRORED, 200), (DYNAMIC, 60)])
+def test_a_device_computes_as_the_processor_does(table, steps):
+    params = params_of(table)
+    processor, device = (
+        advanced(SphFluid(params), steps),
+        advanced(DeviceFluid(params, DEVICE), steps),
+    )
+    assert processor.state.moved > 0.0
+    assert difference(processor, device, "points") < 1e-13
+    assert difference(processor, device, "velocity") < 2e-7  # both are rounded to single
+    assert device.stable_dt() == pytest.approx(processor.stable_dt(), rel=1e-12)
+    first, second = processor.save(), device.save()
+    assert first.keys() == second.keys()
+    assert np.array_equal(first["identity"], second["identity"])  # sorted alike
+    assert np.abs(first["reference"] - second["reference"]).max() < 1e-13
+
+
+def test_gauges_and_totals_are_those_of_the_processor():
+    params = params_of(MIRRORED)
+    processor, device = advanced(SphFluid(params), 40), advanced(DeviceFluid(params, DEVICE), 40)
+    keys = frozenset(f"{p.name}.{f.name}" for p in device.gives for f in p.fields)
+    wanted = frozenset(key for key in keys if key != "surface_load.force")
+    expected, found = processor.give(wanted), device.give(wanted)
+    assert found.keys() == expected.keys() == wanted and wanted
+    for key in wanted:
+        assert found[key] == pytest.approx(expected[key], rel=1e-9, abs=1e-9)
+    assert device.totals().kinetic == pytest.approx(processor.totals().kinetic, rel=1e-9)
+    assert device.totals().mass == processor.totals().mass
+
+
+def test_the_same_device_gives_the_same_bits_on_any_number_of_threads():
+    params = params_of(DYNAMIC)
+    first, again = (
+        advanced(DeviceFluid(params, Resources(threads, device="opencl:0")), 30).save()
+        for threads in (1, 2)
+    )
+    for key, array in first.items():
+        assert np.array_equal(array, again[key], equal_nan=True), key
+
+
+def test_a_snapshot_of_a_device_goes_on_there_with_the_same_bits():
+    params = params_of(MIRRORED)
+    device = advanced(DeviceFluid(params, DEVICE), 25)
+    saved = device.save()
+    other = DeviceFluid(params, DEVICE)
+    other.load(saved)
+    first, second = advanced(device, 25).save(), advanced(other, 25).save()
+    for key, array in first.items():
+        assert np.array_equal(array, second[key], equal_nan=True), key
+
+
+def test_snapshots_go_on_elsewhere():
+    params = params_of(MIRRORED)
+    device, processor = DeviceFluid(params, DEVICE), SphFluid(params)
+    advanced(device, 25), advanced(processor, 25)
+    moved_out, moved_in = SphFluid(params), DeviceFluid(params, DEVICE)
+    moved_out.load(device.save())
+    moved_in.load(processor.save())
+    whole = advanced(processor, 25)
+    for fluid in (moved_out, moved_in):
+        assert difference(whole, advanced(fluid, 25), "points") < 1e-13
+
+
+def test_single_precision_rounds_pairs_alone():
+    double, single = params_of(MIRRORED), params_of(MIRRORED | {"precision": "float32"})
+    exact, rounded = advanced(SphFluid(double), 60), advanced(DeviceFluid(single, DEVICE), 60)
+    assert 0.0 < difference(exact, rounded, "points") < 1e-6
+    assert difference(exact, rounded, "density") < 1e-6
+
+
+def test_fluid_that_leaves_the_tank_is_lost_as_on_the_processor():
+    thrown = MIRRORED | {"gravity": [0.0, 0.0, 0.0], "initial": {"velocity": [0.0, 0.0, 8.0]}}
+    params = params_of(thrown)
+    processor, device = advanced(SphFluid(params), 190), advanced(DeviceFluid(params, DEVICE), 190)
+    first, second = processor.save(), device.save()
+    assert first["lost_through"].sum() > 0
+    for key in ("lost_through", "exit_face", "identity"):
+        assert np.array_equal(first[key], second[key]), key
+
+
+REFUSED = {
+    "boundary.method": {"boundary": DYNAMIC["boundary"] | {"method": "potential"}},
+    "boundary.symmetry": {"boundary": DYNAMIC["boundary"] | {"symmetry": ["y-"]}},
+    "integration": {"integration": "symplectic"},
+    "xsph": {"xsph": 0.5},
+    "shepard_every": {"shepard_every": 20},
+    "viscosity.kinematic": {
+        "boundary": DYNAMIC["boundary"] | {"method": "mdbc"},
+        "viscosity": {"kinematic": 1e-3},
+    },
+}
+
+
+@pytest.mark.parametrize("key", REFUSED)
+def test_what_devices_cannot_compute_is_refused_by_name(key):
+    params = params_of(DYNAMIC | REFUSED[key])
+    with pytest.raises(SceneError, match=rf'{key} must be .* found .*set device = "cpu"'):
+        refuse_what_needs_the_processor(params, "opencl")
+
+
+def test_links_to_bodies_are_refused():
+    device = DeviceFluid(params_of(DYNAMIC), DEVICE)
+    with pytest.raises(SceneError, match=r"must have no links to bodies yet.*Remove the links"):
+        device.bind({"surface.volume": np.ones(2)}, frozenset({"surface"}))
+
+
+def test_a_device_that_is_not_there_is_refused():
+    with pytest.raises(SceneError, match=r"device opencl:99: .*found 1.*`quintet devices`"):
+        DeviceFluid(params_of(DYNAMIC), Resources(device="opencl:99"))
+
+
+def test_a_fluid_on_the_processor_loads_no_opencl():
+    program = (
+        "import sys; from quintet.components.sph_fluid import MANIFEST; MANIFEST.load();"
+        "print([name for name in sys.modules if 'opencl' in name])"
+    )
+    result = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
+    assert result.stdout.strip() == "[]", result.stderr
