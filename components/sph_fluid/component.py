@@ -226,11 +226,6 @@ class SphFluid(Component):
         if len(self.state.reference):
             self._list()
 
-    def renew_lists(self) -> None:
-        """List what is near in a state that was changed from outside, if it was sorted."""
-        if len(self.state.reference):
-            self._list()
-
     def begin_from(self, state: Fields) -> None:
         """Begin from the state of another run; motions, books and warnings begin with this one."""
         clocks = {*self.frame.save(), *self.pistons.save()}

@@ -82,9 +82,9 @@ class Expressions:
         value: Value = method(node)
         return value
 
-    def refuse(self, node: ast.AST | None, found: str, remedy: str) -> PrintError:
+    def refuse(self, node: ast.AST | None, construct: str, remedy: str) -> PrintError:
         """Make the error that names a construct."""
-        return self.place.refuse(node, found, remedy)
+        return self.place.refuse(node, construct, remedy)
 
     def number(self, node: ast.expr) -> Value:
         """Print an expression that must be a number."""
@@ -169,9 +169,9 @@ class Expressions:
     def _tuple(self, node: ast.Tuple) -> Value:
         if any(isinstance(item, ast.Starred) for item in node.elts):
             raise self.refuse(node, f"`{ast.unparse(node)}`", "Write out the items.")
-        made = row([self.print(item) for item in node.elts])
-        self.program.add_type(made.kind)
-        return made
+        items = row([self.print(item) for item in node.elts])
+        self.program.add_type(items.kind)
+        return items
 
     def _unaryop(self, node: ast.UnaryOp) -> Value:
         if isinstance(node.op, ast.Not):
@@ -347,8 +347,8 @@ class Expressions:
         if len(arguments) != len(function._fields):
             raise self.refuse(node, f"`{ast.unparse(node)}`", "Give it all its fields.")
         kinds = (each.kind for each in arguments)
-        made = Record(function.__name__, tuple(zip(function._fields, kinds, strict=True)))
-        named = self.program.add_type(made)
+        record = Record(function.__name__, tuple(zip(function._fields, kinds, strict=True)))
+        named = self.program.add_type(record)
         assert isinstance(named, Record)
         return Value(struct_of(named, arguments), named)
 

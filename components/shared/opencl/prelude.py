@@ -66,7 +66,7 @@ def precision_name(precision: Precision) -> str:
 
 def power_function(kind: str, exponent: int) -> str:
     """Function that raises to a whole power by squaring, multiplying in numba's order."""
-    one = "1L" if kind == "long" else f"({kind})1"
+    unit = "1L" if kind == "long" else f"({kind})1"
     lines, rest = [], abs(exponent)
     while rest:
         if rest & 1:
@@ -75,7 +75,7 @@ def power_function(kind: str, exponent: int) -> str:
         if rest:
             lines.append("square *= square;")
     end = "1 / result" if exponent < 0 else "result"
-    body = "\n    ".join([f"{kind} square = x, result = {one};", *lines, f"return {end};"])
+    body = "\n    ".join([f"{kind} square = x, result = {unit};", *lines, f"return {end};"])
     return f"static {kind} {power_name(kind, exponent)}({kind} x) {{\n    {body}\n}}"
 
 

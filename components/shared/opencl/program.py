@@ -141,8 +141,8 @@ class Program:
         assert statements.returned is not None
         name = self._free_name(function_name(function))
         used = [each for each in parameters if types[each] != NONE]
-        given = ", ".join(f"{types[each].name} {identifier(each)}" for each in used)
-        head = f"static inline {statements.returned.name} {name}({given}) {{"
+        declared = ", ".join(f"{types[each].name} {identifier(each)}" for each in used)
+        head = f"static inline {statements.returned.name} {name}({declared}) {{"
         lines = [head, *locals_of(types, set(parameters)), *body, "}"]
         self._printed.append("\n".join(lines))
         return name, statements.returned

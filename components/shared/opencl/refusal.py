@@ -28,9 +28,9 @@ class Place:
         """Line of the file that a node of the function stands in."""
         return self.first + getattr(node, "lineno", 1) - 1
 
-    def refuse(self, node: ast.AST | None, found: str, remedy: str) -> PrintError:
+    def refuse(self, node: ast.AST | None, construct: str, remedy: str) -> PrintError:
         """Make the error: a construct that was found, and what to do."""
         return PrintError(
             f"{Path(self.file).name}:{self.line(node)}, in {self.name}: a law printed for a device "
-            f"must be a pure function of numbers; found {found}. {remedy} ({self.file})"
+            f"must be a pure function of numbers; found {construct}. {remedy} ({self.file})"
         )

@@ -116,6 +116,13 @@ class DeviceFluid(Component):
             self.stepping.rows.get(self.host.state)
             self._is_read = True
 
+    def _list_on_host(self) -> None:
+        """List what is near, for gauges, from where the rows were when they were sorted."""
+        host = self.host
+        if len(host.state.reference):
+            host.lists.make(host.state, host.boundary, host.symmetry, host.team)
+        self._is_listed = True
+
     def check(self) -> None:
         """Refuse a particle whose velocity is not finite."""
         self._get()
@@ -128,8 +135,7 @@ class DeviceFluid(Component):
         if not wanted <= LOADS:
             self._get()
             if not self._is_listed:
-                self.host.renew_lists()
-                self._is_listed = True
+                self._list_on_host()
         return self.host.give(wanted)
 
     def save(self) -> Fields:
