@@ -13,6 +13,7 @@ from quintet.interfaces.component import Resources
 from quintet.interfaces.errors import SceneError
 
 pytest.importorskip("pyopencl")
+from quintet.components.shared.opencl.devices import Device
 from quintet.components.sph_fluid.opencl.device_fluid import DeviceFluid
 from quintet.components.sph_fluid.opencl.refusal import refuse_what_needs_the_processor
 
@@ -74,6 +75,21 @@ def test_a_device_computes_as_the_processor_does(table, steps):
     assert first.keys() == second.keys()
     assert np.array_equal(first["identity"], second["identity"])  # sorted alike
     assert np.abs(first["reference"] - second["reference"]).max() < 1e-13
+
+
+@pytest.mark.parametrize("table", [MIRRORED, DYNAMIC])
+def test_a_device_that_is_no_processor_gets_lists_by_columns_and_single_lanes(table, monkeypatch):
+    monkeypatch.setattr(Device, "is_processor", property(lambda self: False))
+    params = params_of(table)
+    processor, device = advanced(SphFluid(params), 30), advanced(DeviceFluid(params, DEVICE), 30)
+    assert not device.stepping.rows.cells.by_rows
+    assert difference(processor, device, "points") < 1e-13
+
+
+def test_a_device_without_double_precision_is_refused(monkeypatch):
+    monkeypatch.setattr(Device, "has_doubles", property(lambda self: False))
+    with pytest.raises(SceneError, match=r"it must compute in double precision.*`quintet devices`"):
+        DeviceFluid(params_of(DYNAMIC), DEVICE)
 
 
 def test_gauges_and_totals_are_those_of_the_processor():

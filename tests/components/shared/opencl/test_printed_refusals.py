@@ -7,7 +7,7 @@ import pytest
 
 from quintet.components.shared.opencl.program import Program
 from quintet.components.shared.opencl.refusal import PrintError
-from quintet.components.shared.opencl.types import type_of
+from quintet.components.shared.opencl.types import LANES, type_of
 
 TABLE = {"a": 1.0}
 TINY = 1e-200
@@ -246,6 +246,39 @@ def test_single_precision_refuses_constants_that_it_cannot_hold():
     with pytest.raises(PrintError, match=r"the constant 1e-200, which single precision cannot"):
         Program("single").add(uses_a_tiny_constant, 0.0)
     Program("double").add(uses_a_tiny_constant, 0.0)
+
+
+def shortens(x):
+    return 1.0 if x > 0.0 else 0.0
+
+
+def rounds_down(x):
+    return x // 2.0
+
+
+def counts(x):
+    return int(x)
+
+
+def notices(x):
+    return math.isnan(x)
+
+
+@pytest.mark.parametrize("law", [shortens, rounds_down, counts, notices])
+def test_what_lanes_cannot_do_together_is_refused(law):
+    with pytest.raises(PrintError, match=r"of several lanes\. Print it for one lane, or use min"):
+        Program("double", lanes=4).add(law, LANES)
+
+
+def test_laws_without_branches_are_printed_for_several_lanes():
+    program = Program("double", lanes=4)
+    name, kind = program.add(bounded, LANES, 1.0)
+    assert kind == LANES and "typedef double4 reals" in program.text
+    assert f"static inline reals {name}(reals x, real most)" in program.text
+
+
+def bounded(x, most):
+    return max(min(x * 2.0, most), 0.0) ** 2 + math.sqrt(x)
 
 
 def test_types_stand_for_themselves():
