@@ -5,13 +5,7 @@ import inspect
 import types as python_types
 from typing import Any, Protocol
 
-from quintet.components.shared.opencl.functions import (
-    BITS,
-    EXTREMES,
-    SCALAR,
-    TO_INT,
-    TO_REAL,
-)
+from quintet.components.shared.opencl.calls import ONE_LANE, PASS_NUMBERS, c_name, intrinsic
 from quintet.components.shared.opencl.names import identifier
 from quintet.components.shared.opencl.prelude import Precision, power_name
 from quintet.components.shared.opencl.refusal import Place, PrintError
@@ -37,8 +31,6 @@ ROUNDED_DOWN: dict[type[ast.operator], str] = {ast.FloorDiv: "floor_divide", ast
 COMPARED: dict[type[ast.cmpop], str] = {
     ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">=", ast.Eq: "==", ast.NotEq: "!=",
 }  # fmt: skip
-ONE_LANE = "Print it for one lane, or use min and max in place of branches."
-PASS_NUMBERS = "Pass what it needs as arguments, or write it out."
 
 
 class Printer(Protocol):
@@ -202,7 +194,7 @@ class Expressions:
             raise self.refuse(node, f"`{ast.unparse(node)}`", "Shift and mask whole numbers alone.")
         a, b = (converted(value, kind, self.program.precision).code for value in (left, right))
         if type(op) in ROUNDED_DOWN:
-            return Value(f"{ROUNDED_DOWN[type(op)]}_{_c_name(kind)}({a}, {b})", kind)
+            return Value(f"{ROUNDED_DOWN[type(op)]}_{c_name(kind)}({a}, {b})", kind)
         sign = "/" if isinstance(op, ast.Div) else ARITHMETIC.get(type(op)) or BITWISE[type(op)]
         return Value(f"({a} {sign} {b})", kind)
 
@@ -219,8 +211,8 @@ class Expressions:
                     "Make the number a float.",
                 )  # fmt: skip
             kind = max(base.kind, INT, key=NUMBERS.index)
-            self.program.add_power(_c_name(kind), exponent.number)
-            return Value(f"{power_name(_c_name(kind), exponent.number)}({base.code})", kind)
+            self.program.add_power(c_name(kind), exponent.number)
+            return Value(f"{power_name(c_name(kind), exponent.number)}({base.code})", kind)
         kind = max(base.kind, exponent.kind, REAL, key=NUMBERS.index)
         a, b = (converted(each, kind, self.program.precision).code for each in (base, exponent))
         return Value(f"pow({a}, {b})", kind)
@@ -294,53 +286,15 @@ class Expressions:
         if function is len and isinstance(arguments[0].kind, Row | Record):
             whole = arguments[0].kind
             return self.constant(len(whole.items if isinstance(whole, Row) else whole.fields), node)
-        if (intrinsic := self._intrinsic(function, arguments, node)) is not None:
-            return intrinsic
+        if (
+            value := intrinsic(self.place, self.program.precision, function, arguments, node)
+        ) is not None:
+            return value
         if not isinstance(getattr(function, "py_func", function), python_types.FunctionType):
             raise self.refuse(node, f"a call of `{ast.unparse(node.func)}`", PASS_NUMBERS)
         name, kind = self.program.add(function, *(each.kind for each in arguments))
         codes = ", ".join(each.code for each in arguments if each.kind != NONE)
         return Value(f"{name}({codes})", kind)
-
-    def _intrinsic(self, function: Any, arguments: list[Value], node: ast.Call) -> Value | None:
-        """Print a function that OpenCL has, or None."""
-        kinds = [each.kind for each in arguments]
-        is_known = function in EXTREMES or function in TO_REAL or function in TO_INT
-        if not (is_known or function is abs or function in SCALAR):
-            return None
-        if any(kind not in NUMBERS for kind in kinds):
-            raise self.refuse(node, f"`{ast.unparse(node)}`, not of numbers", PASS_NUMBERS)
-        precision = self.program.precision
-        in_lanes = LANES in kinds
-        if in_lanes and (function in TO_REAL or function in TO_INT or function in BITS):
-            raise self.refuse(node, f"`{ast.unparse(node)}` of several lanes", ONE_LANE)
-        if function in TO_REAL:
-            return converted(arguments[0], REAL, precision)
-        if function in TO_INT:
-            return Value(f"(long)({arguments[0].code})", INT)
-        if function in EXTREMES:
-            kind = max(*kinds, INT, key=NUMBERS.index)
-            result = converted(arguments[0], kind, precision).code
-            for each in arguments[1:]:
-                more = converted(each, kind, precision).code
-                result = f"{EXTREMES[function]}_{_c_name(kind)}({result}, {more})"
-            return Value(result, kind)
-        if function is abs and kinds == [INT]:
-            return Value(f"abs_long({arguments[0].code})", INT)
-        name, takes, gives = ("fabs", (REAL,), REAL) if function is abs else SCALAR[function]
-        if function in BITS and precision == "single":
-            raise self.refuse(
-                node, f"`{ast.unparse(node)}` in single precision", "Print it in double precision."
-            )
-        if len(takes) != len(arguments):
-            raise self.refuse(node, f"`{ast.unparse(node)}`", f"Give it {len(takes)} arguments.")
-        if in_lanes:
-            if gives != REAL:
-                raise self.refuse(node, f"`{ast.unparse(node)}` of several lanes", ONE_LANE)
-            takes, gives = (LANES,) * len(takes), LANES
-        pairs = zip(arguments, takes, strict=True)
-        codes = ", ".join(converted(each, kind, precision).code for each, kind in pairs)
-        return Value(f"{name}({codes})", gives)
 
     def _record(self, function: Any, arguments: list[Value], node: ast.Call) -> Value:
         """Make a named tuple."""
@@ -351,7 +305,3 @@ class Expressions:
         named = self.program.add_type(record)
         assert isinstance(named, Record)
         return Value(struct_of(named, arguments), named)
-
-
-def _c_name(kind: Type) -> str:
-    return kind.name if kind in (REAL, LANES) else "long"
