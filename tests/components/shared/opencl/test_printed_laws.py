@@ -157,7 +157,7 @@ LAWS = [
     *(Law(law, (ANY, ANY, 0.1)) for law in (
         limiters.van_albada, limiters.minmod, limiters.van_leer, limiters.koren, limiters.superbee,
     )),
-    Law(transport.sutherland, (Between(100.0, 2000.0), GAS), ulp=4),
+    Law(transport.sutherland, (Between(100.0, 2000.0), GAS)),
 ]  # fmt: skip
 MODULES = {inspect.getmodule(getattr(law.function, "py_func", law.function)) for law in LAWS}
 LAW_FILES = [each for each in MODULES if each.__name__.split(".")[-1] == "laws"]
