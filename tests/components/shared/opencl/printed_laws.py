@@ -42,13 +42,15 @@ def vector(size: float) -> tuple[Between, ...]:
 class Law:
     """A law and its arguments: numbers, tuples and named tuples, some of them random.
 
-    `ulp` is how far results may be apart, in units of the last place of the larger one; 0: none.
+    `ulp` is how far results may be apart, in units of the last place of the larger one; 0: none. Of
+    a law that `cancels` digits it is the last place of the largest number that goes in or out.
     """
 
     function: Any
     arguments: tuple[Any, ...]
     ulp: int = 0
     name: str = field(default="")
+    cancels: bool = False
 
     def __post_init__(self) -> None:
         python = getattr(self.function, "py_func", self.function)
@@ -178,9 +180,16 @@ def paths(kind: Type, path: str) -> Iterator[str]:
         yield path
 
 
-def ulps(first: np.ndarray, second: np.ndarray) -> float:
-    """Largest difference, in units of the last place of the larger of two numbers."""
+def ulps(first: np.ndarray, second: np.ndarray, scale: Any = 0.0) -> float:
+    """Largest difference, in units of the last place of the larger number, or of a scale."""
     same = (first == second) | (np.isnan(first) & np.isnan(second))
-    first, second = first[~same], second[~same]
-    unit = np.spacing(np.maximum(np.abs(first), np.abs(second)))
-    return float((np.abs(first - second) / unit).max(initial=0.0))
+    largest = np.maximum(np.maximum(np.abs(first), np.abs(second)), scale)
+    return float((np.abs(first - second)[~same] / np.spacing(largest[~same])).max(initial=0.0))
+
+
+def scale_of(law: Law, rows: list[tuple[Any, ...]], results: np.ndarray) -> Any:
+    """Scale (rows, 1) of a law's differences: 0, or the largest number of a row if it cancels."""
+    if not law.cancels:
+        return 0.0
+    largest = [max(map(abs, leaves(row))) for row in rows]
+    return np.maximum(np.abs(results).max(axis=1), largest)[:, np.newaxis]
