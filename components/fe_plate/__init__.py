@@ -1,8 +1,8 @@
-"""Elastic-plastic structures of 8-node solid elements, stepped explicitly.
+"""Elastic-plastic structures of hexahedra or ten-node tetrahedra, stepped explicitly.
 
     M dv/dt = Σ F - ∫ Bᵀσ dV + m g,   dx/dt = v
 
-One quadrature point an element, with the mean gradient ∂N/∂x of its corners, so that it passes the
+Hexahedra: one quadrature point an element, with the mean gradient ∂N/∂x of its corners, so that it passes the
 patch test on distorted meshes; what that point does not see is held by the stabilisation of
 Flanagan and Belytschko. Stress by Jaumann's rate at the middle of the step, flow stress of Johnson
 and Cook, equation of state of Mie and Grüneisen, linear and quadratic bulk viscosity; elements that

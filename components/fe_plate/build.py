@@ -9,6 +9,7 @@ import numpy as np
 from quintet.components.fe_plate.kernels.eight_points import write_point_volumes
 from quintet.components.fe_plate.kernels.geometry import write_volumes
 from quintet.components.fe_plate.meshes.mesh import Mesh, chosen, faces_in, mesh
+from quintet.components.fe_plate.meshes.tetrahedra import point_volumes
 from quintet.components.fe_plate.params import FePlateParams, RigidWall
 from quintet.components.fe_plate.points import points_of
 from quintet.components.fe_plate.state import (
@@ -25,6 +26,7 @@ from quintet.components.fe_plate.state import (
     Span,
     State,
     Whole,
+    node_shares,
     state_at_rest,
 )
 from quintet.components.shared.materials.params import material
@@ -54,7 +56,7 @@ class Structure(NamedTuple):
     shortest: float  # m, least edge of cubes, or squares, as large as the elements
 
     def corners(self, elements: Whole | slice) -> Index:
-        """Nodes (k, 8) at the corners of some elements, where `mesh` need not have them."""
+        """Nodes (k, c) at the corners of some elements, where `mesh` need not have them."""
         point = self.places.point[elements, 0]
         return self.model.corner[point // self.places.point.shape[1]]
 
@@ -69,8 +71,8 @@ def structure(
     volume = _volumes(grid, depth)
     element_mass = np.array([law.density for law in laws])[grid.part] * volume
     nodes, points = len(grid.node), points_of(params)
-    share = np.repeat(element_mass / 8.0, 8)
-    mass = np.bincount(grid.corner.ravel(), share, nodes).astype(np.float64)
+    share = element_mass[:, None] * node_shares(grid.corner.shape[1])
+    mass = np.bincount(grid.corner.ravel(), share.ravel(), nodes).astype(np.float64)
     place, element, first = in_blocks(grid.part, len(laws), LANES // points)
     corner = grid.corner[element].astype(np.uint32)
     point_volume = _point_volumes(grid, corner, volume[element], points, depth)
@@ -103,6 +105,8 @@ def _point_volumes(grid: Mesh, corner: Index, volume: Array, points: int, depth:
     """Volumes [m3] of the points of all places, from those (places,) of their elements."""
     if points == 1:
         return volume
+    if grid.has_tetrahedra:
+        return point_volumes(grid.node, corner.astype(np.int64)).ravel()
     volumes = np.empty(points * len(corner))
     write_point_volumes(grid.node, corner, depth, volumes)
     return volumes
@@ -126,6 +130,8 @@ def _resistance(params: FePlateParams) -> Resistance:
 
 def _volumes(grid: Mesh, depth: float) -> Array:
     """Volume (e,) m3 of the elements, of a depth [m] along y in a plane; all must be positive."""
+    if grid.has_tetrahedra:  # checked as they were read
+        return np.asarray(point_volumes(grid.node, grid.corner).sum(axis=1))
     volume = np.empty(len(grid.corner))
     write_volumes(grid.node, grid.corner.astype(np.uint32), depth, volume)
     if not (volume > 0.0).all():
@@ -217,7 +223,7 @@ def targets(
 
     Parameters
     ----------
-    corner : (places, 8) int array
+    corner : (places, c) int array
     filled : (b,) int array
     spans : sequence of Span
         All blocks, in the order in which they are stepped.
@@ -226,7 +232,7 @@ def targets(
     nodes : int
     """
     blocks = len(filled)
-    size = len(corner) // blocks
+    size, corners = len(corner) // blocks, corner.shape[1]
     acts = size * np.arange(blocks, dtype=np.uint32)
     none: Whole = np.zeros(0, np.int64)
     filled_spans = [span for span in spans if span.last > span.first]
@@ -237,20 +243,20 @@ def targets(
         return corner, acts, Parted(none, none)
     used = (np.arange(size) < filled[:, None]).ravel()
     share = np.repeat(np.searchsorted(shares, np.arange(blocks), "right"), size)
-    flat, number = corner[used].ravel(), np.repeat(share[used], 8)
+    flat, number = corner[used].ravel(), np.repeat(share[used], corners)
     lowest, highest = np.full(nodes, len(shares)), np.zeros(nodes, np.int64)
     np.minimum.at(lowest, flat, number)
     np.maximum.at(highest, flat, number)
     is_parted = lowest < highest
-    at = np.flatnonzero(is_parted[corner.ravel()] & np.repeat(used, 8))
+    at = np.flatnonzero(is_parted[corner.ravel()] & np.repeat(used, corners))
     at = at[np.argsort(corner.ravel()[at], kind="stable")]
-    detached, row = np.unique(at // (8 * size), return_inverse=True)  # blocks
+    detached, row = np.unique(at // (corners * size), return_inverse=True)  # blocks
     behind = corner.reshape(blocks, -1)[detached]
-    behind[row, at % (8 * size)] = nodes + np.arange(len(at))
+    behind[row, at % (corners * size)] = nodes + np.arange(len(at))
     acts[detached] = len(corner) + size * np.arange(len(detached))
     node = np.flatnonzero(is_parted)
     begin = nodes + np.searchsorted(corner.ravel()[at], np.append(node, nodes))
-    return np.concatenate([corner, behind.reshape(-1, 8)]), acts, Parted(node, begin)
+    return np.concatenate([corner, behind.reshape(-1, corners)]), acts, Parted(node, begin)
 
 
 def initial_state(params: FePlateParams, built: Structure) -> State:

@@ -3,6 +3,7 @@
 import numpy as np
 
 from quintet.components.fe_plate.build import Structure
+from quintet.components.fe_plate.meshes.tetrahedra import PIECES
 from quintet.components.fe_plate.state import Array, Whole
 from quintet.components.shared.geometry.face_projection import corners
 
@@ -37,5 +38,13 @@ def described_layer(
         "mass": built.mass[surface],
         "bulk": np.array([law.bulk for law in built.laws])[part],
         "shear": np.array([law.shear for law in built.laws])[part],
-        "thickness": built.volume[owner] / area,
+        "thickness": _thickness(built, owner, area),
     }
+
+
+def _thickness(built: Structure, owner: Whole, area: Array) -> Array:
+    """Thickness (m,) m of the layer of nodes behind faces: half a tetrahedron's height."""
+    if not built.mesh.has_tetrahedra:
+        return np.asarray(built.volume[owner] / area)
+    whole = area.reshape(-1, len(PIECES)).sum(axis=1)  # m2, of faces with six nodes
+    return np.asarray(1.5 * built.volume[owner] / np.repeat(whole, len(PIECES)))

@@ -7,6 +7,7 @@ import numpy as np
 from quintet.components.fe_plate.build import Structure
 from quintet.components.fe_plate.kernels.eight_points import step_eight_points
 from quintet.components.fe_plate.kernels.elements import step_elements
+from quintet.components.fe_plate.kernels.ten_nodes import step_ten_nodes
 from quintet.components.fe_plate.loads import add_pressure
 from quintet.components.fe_plate.params import Pressure
 from quintet.components.fe_plate.ranks.method import Ranks, Rows
@@ -74,8 +75,8 @@ class Loads:
 
 
 def stepping_kernel(points: int) -> Kernel:
-    """Kernel that steps the blocks of elements with 1 or 8 points; others are not compiled."""
-    return _one_point if points == 1 else _eight_points
+    """Kernel that steps the blocks of elements with 1, 4 or 8 points; others are not compiled."""
+    return {1: _one_point, 4: _ten_nodes, 8: _eight_points}[points]
 
 
 def _one_point(begin: int, end: int, first: int, *arguments: object) -> Stepped:
@@ -86,4 +87,9 @@ def _one_point(begin: int, end: int, first: int, *arguments: object) -> Stepped:
 
 def _eight_points(begin: int, end: int, first: int, *arguments: object) -> Stepped:
     result: Stepped = step_eight_points(first + begin, first + end, *arguments)
+    return result
+
+
+def _ten_nodes(begin: int, end: int, first: int, *arguments: object) -> Stepped:
+    result: Stepped = step_ten_nodes(first + begin, first + end, *arguments)
     return result

@@ -19,6 +19,7 @@ from quintet.components.fe_plate.state import (
     Array,
     Places,
     State,
+    node_shares,
 )
 from quintet.components.fe_plate.view import von_mises
 from quintet.components.shared.search.nearest import nearest_rows
@@ -108,7 +109,7 @@ def of_node_sets(state: State, sets: list[Rows], ranks: Ranks) -> dict[str, Arra
 def of_elements(built: Structure, state: State, sets: list[Rows], ranks: Ranks) -> dict[str, Array]:
     """Mean velocities and energies of sets of elements.
 
-    Each element has an eighth of its mass at each of its corners.
+    Each element has shares of its mass at its nodes.
     """
     ranks.copy_velocities(state)
     columns: list[Array] = []
@@ -116,10 +117,11 @@ def of_elements(built: Structure, state: State, sets: list[Rows], ranks: Ranks) 
         rows = elements.rows
         subset = Places(built.places.point[rows], built.places.share[rows])
         mass = built.element_mass[rows]
-        velocity = state.velocity[built.corners(rows)]  # (e, 8, 3)
+        corners = built.corners(rows)
+        velocity, shares = state.velocity[corners], node_shares(corners.shape[1])  # (e, c, 3)
         internal = mass * subset.of(state, ENERGY) + subset.spring_energy(state)
-        columns += [mass, *(mass * velocity[:, :, d].mean(axis=1) for d in range(3))]
-        columns += [0.5 * mass * (velocity**2).sum(axis=2).mean(axis=1), internal]
+        columns += [mass, *(mass * (velocity[:, :, d] * shares).sum(axis=1) for d in range(3))]
+        columns += [0.5 * mass * ((velocity**2).sum(axis=2) * shares).sum(axis=1), internal]
         columns += [internal * (subset.active(state) == 0.0)]
     sums = ranks.sums(columns).reshape(-1, 7)
     return {

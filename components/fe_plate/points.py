@@ -4,12 +4,21 @@ from quintet.components.fe_plate.meshes.layers import ENOUGH, fewest_layers
 from quintet.components.fe_plate.meshes.params import Part
 from quintet.components.fe_plate.params import FePlateParams
 from quintet.components.shared.materials.params import material
+from quintet.interfaces.errors import SceneError
 
-ALL = 8  # points of an element with `integration = "full"`
+ALL = 8  # points of a hexahedron with `integration = "full"`
+OF_TETRAHEDRA = 4
 
 
 def points_of(params: FePlateParams) -> int:
-    """Quadrature points of each element, 1 or 8."""
+    """Quadrature points of each element, 1 or 8, and 4 of tetrahedra."""
+    if params.parts[0].has_tetrahedra:
+        if params.integration == "reduced":
+            raise SceneError(
+                "integration: tetrahedra with 10 nodes have four quadrature points, as one would "
+                'leave most of their modes without stiffness; found "reduced". Leave it out.'
+            )
+        return OF_TETRAHEDRA
     if params.integration != "auto":
         return ALL if params.integration == "full" else 1
     if any(is_shocked(part) for part in params.parts):

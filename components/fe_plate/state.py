@@ -1,5 +1,6 @@
 """All arrays of a structure: what stays as it was built, and what moves."""
 
+import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -22,6 +23,9 @@ POINT_ROWS = 14
 # Rows of the springs that hold the hourglass patterns of elements with one point.
 SPRING, SPRING_ENERGY = 0, 12  # 12 rows N, J
 SPRING_ROWS = 13
+# Tetrahedra with ten nodes: their four points stand at λ = OWN of a corner and REST of the others.
+OWN, REST = 0.25 + 0.15 * math.sqrt(5.0), 0.25 - 0.05 * math.sqrt(5.0)
+NODE_SHARES = np.array([1.0 / 36.0] * 4 + [4.0 / 27.0] * 6)  # of the element's mass at each node
 FEW = 0.25  # of all points: their numbers are taken one by one, without a copy of the whole row
 
 
@@ -32,8 +36,8 @@ class Model(NamedTuple):
     load no node.
     """
 
-    corner: Index  # (places, 8) nodes
-    target: Index  # (places or more, 8) rows of forces: these corners, then others' rows
+    corner: Index  # (places, c) nodes, c = 8 of hexahedra and 10 of tetrahedra
+    target: Index  # (places or more, c) rows of forces: these corners, then others' rows
     acts: Index  # (b,) first row in `target` of what a block's corners act on
     filled: Index  # (b,) places of a block that are used
     volume: Array  # (b LANES,) m3, of points at the start
@@ -138,6 +142,11 @@ def state_at_rest(nodes: Array, blocks: int, sizes: Sizes) -> State:
         wall_impulse=np.zeros((walled, sizes.walls)),
         wall_work=np.zeros(walled),
     )
+
+
+def node_shares(nodes: int) -> Array:
+    """Shares (nodes,) of an element's mass at its nodes: equal ones, but of ten nodes."""
+    return NODE_SHARES if nodes == len(NODE_SHARES) else np.full(nodes, 1.0 / nodes)
 
 
 class Places(NamedTuple):

@@ -11,6 +11,7 @@ from quintet.components.fe_plate.meshes.mesh import Mesh, chosen
 from quintet.components.fe_plate.meshes.selections import Fixed
 from quintet.components.fe_plate.params import FePlateParams, RigidWall
 from quintet.components.fe_plate.state import Array, Whole
+from quintet.components.shared.geometry.face_projection import corners as closed
 from quintet.interfaces.component import Fields
 from quintet.interfaces.faces import CLAMPED, SYMMETRY, WALL, polygons
 
@@ -61,7 +62,7 @@ def _corners(mesh: Mesh) -> Array:
         first, last = mesh.node[side[:, 0]], mesh.node[side[:, 1]]
         along = np.array([0.0, 1.0, 0.0])
         return np.stack([last, first, first + along, last + along], axis=1)
-    return np.asarray(mesh.node[side])
+    return np.asarray(mesh.node[closed(side)])
 
 
 def _rectangle(low: Array, high: Array, axis: int, place: float, way: float) -> Array:

@@ -45,18 +45,19 @@ def view(mesh: Mesh, motion: Array, elements: Array) -> Fields:
     live = np.flatnonzero(elements[:, 0])
     planar = bool((mesh.side[:1, 2] < 0).any())
     side = mesh.corner[live][:, 3::-1] if planar else outer_sides(mesh.corner[live])[0]
-    node, cells = np.unique(side, return_inverse=True)
+    corners = 3 if mesh.has_tetrahedra else 4
+    node, cells = np.unique(side[:, :corners], return_inverse=True)
     corner = mesh.corner[live].ravel()
     count = np.maximum(np.bincount(corner, minlength=len(mesh.node)), 1)
 
     def mean(values: Array) -> Array:
         """Mean over the elements that meet at each node."""
-        summed = np.bincount(corner, np.repeat(values[live], 8), len(mesh.node))
+        summed = np.bincount(corner, np.repeat(values[live], mesh.corner.shape[1]), len(mesh.node))
         return np.asarray((summed / count)[node])
 
     return {
         "points": motion[node, :3],
-        "cells": cells.reshape(-1, 4),
+        "cells": cells.reshape(-1, corners),
         "velocity": motion[node, 3:],
         **{name: mean(elements[:, 1 + k]) for k, name in enumerate(VALUES)},
         "displacement": motion[node, :3] - mesh.node[node],

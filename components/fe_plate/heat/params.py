@@ -1,12 +1,15 @@
 """What a scene says about a body that conducts heat."""
 
+from pathlib import Path
 from typing import Annotated, ClassVar
 
 from pydantic import Field
 
+from quintet.components.fe_plate.meshes.files import FileMesh
 from quintet.components.fe_plate.meshes.params import MeshedPart
 from quintet.components.fe_plate.meshes.selections import Faces, NodeSet
 from quintet.components.shared.geometry.selections import ByBoxOrSet
+from quintet.interfaces.errors import SceneError
 from quintet.interfaces.params import (
     NotNegative,
     Number,
@@ -20,7 +23,7 @@ Tolerance = Annotated[float, Field(gt=0.0, le=1e-3)]
 
 @parameters
 class ConductingPart(MeshedPart):
-    """A box of equal elements, a cylinder of them, or a mesh of 8-node solids from a file.
+    """A box of equal elements, a cylinder of them, or a mesh of hexahedra from a file.
 
     Parameters
     ----------
@@ -38,6 +41,15 @@ class ConductingPart(MeshedPart):
     density: Positive | None = None
     specific_heat: Positive | None = None
     temperature: NotNegative = 298.0
+
+    def placed(self) -> FileMesh:
+        """Nodes where they are [m], and hexahedra; tetrahedra are refused."""
+        if self.has_tetrahedra:
+            raise SceneError(
+                f"file {Path(self.file or '').name} must have 8-node solids, for heat is conducted "
+                "through no others; found tetrahedra. Mesh it with 8-node solids."
+            )
+        return super().placed()
 
     @property
     def capacity(self) -> float:

@@ -27,9 +27,7 @@ from quintet.components.fe_plate.kernels.blocks import (
     FRAME,
     GRADIENT,
     LENGTH,
-    RATIO,
     ROWS,
-    SPECIFIC,
     STRESS,
     VOLUME,
     V,
@@ -38,7 +36,6 @@ from quintet.components.fe_plate.kernels.blocks import (
     load_corners,
     patterns_of,
     put_nine,
-    put_six,
     put_three,
     six,
     take_from_corners,
@@ -47,21 +44,18 @@ from quintet.components.fe_plate.kernels.blocks import (
 from quintet.components.fe_plate.kernels.flow import HUGE
 from quintet.components.fe_plate.kernels.geometry import cross, dot
 from quintet.components.fe_plate.kernels.material import advance_material
+from quintet.components.fe_plate.kernels.several_points import compare_volumes, erode
 from quintet.components.fe_plate.laws import to_middle
 from quintet.components.fe_plate.state import (
     ACTIVE,
-    DEVIATOR,
-    DILATION,
     LANES,
     POINT_ROWS,
-    PRESSURE,
     Array,
     Model,
     Resistance,
     State,
     Whole,
 )
-from quintet.components.shared.elementary import exponential
 from quintet.components.shared.materials.solid import Solid
 from quintet.components.shared.numba_options import FAST, FAST_LANEWISE
 
@@ -70,7 +64,6 @@ OFF = 1.0 / math.sqrt(3.0)  # of the points from the middle, in ξ, η and ζ
 XI, ETA, ZETA = (
     OFF * np.tile(np.where((np.arange(POINTS) >> bit) & 1, 1.0, -1.0), PER) for bit in (0, 1, 2)
 )
-ROUNDING = 1e-14  # of volumes: at rest nothing is strained
 CUBE = math.sqrt(8.0 / 3.0)  # edge of a cube times √Σ|∇N|² at its points
 
 
@@ -91,13 +84,13 @@ def step_eight_points(
     for block in range(first, last):
         begin, at = block * PER, block * LANES
         rows, before = points[at * POINT_ROWS : (at + LANES) * POINT_ROWS], start[at : at + LANES]
-        erode(rows)
+        erode(rows, POINTS)
         load_corners(position, corner, begin, PER, model.depth, X, work)
         load_corners(velocity, corner, begin, PER, 0.0, V, work)
         broadcast(work)
         point_geometry(work, dt)
         assume_strains(rows, work, law)
-        compare_volumes(rows, before, work, law, dt)
+        compare_volumes(rows, before, work, law, dt, POINTS)
         for k in range(LANES):
             ratio = work[VOLUME * LANES + k] / before[k]
             if ratio < smallest and rows[ACTIVE * LANES + k] > 0.0:
@@ -107,20 +100,6 @@ def step_eight_points(
         sum_forces(rows, work)
         take_from_corners(X, work, acts[block], filled[block], target, forces)
     return step, smallest, worst
-
-
-@njit(**FAST_LANEWISE)
-def erode(points):  # type: ignore[no-untyped-def]
-    """Let all points of an element fail of which one has."""
-    for first in range(0, LANES, POINTS):
-        left = 1.0
-        for k in range(first, first + POINTS):
-            left = min(left, points[ACTIVE * LANES + k])
-        if left == 0.0:
-            for k in range(first, first + POINTS):
-                points[ACTIVE * LANES + k] = 0.0
-                points[PRESSURE * LANES + k] = 0.0
-                put_six(points, DEVIATOR * LANES + k, (0.0, 0.0, 0.0, 0.0, 0.0, 0.0))
 
 
 @njit(**FAST_LANEWISE)
@@ -200,36 +179,6 @@ def point_geometry(work, dt):  # type: ignore[no-untyped-def]
         put_three(work, FRAME, k, e1)
         put_three(work, FRAME + 3, k, cross(e3, e1))
         put_three(work, FRAME + 6, k, e3)
-
-
-@njit(**FAST_LANEWISE)
-def compare_volumes(points, start, work, law, dt):  # type: ignore[no-untyped-def]
-    """Write ρ₀/ρ: that of the element, times what the assumed strains have made of each point."""
-    for first in range(0, LANES, POINTS):
-        now, before, mean = 0.0, 0.0, 0.0
-        for k in range(first, first + POINTS):
-            now += work[VOLUME * LANES + k]
-            before += start[k]
-            mean += work[VOLUME * LANES + k] * trace_at(work, k)
-        mean /= now
-        for k in range(first, first + POINTS):
-            live = points[ACTIVE * LANES + k] > 0.0
-            at = DILATION * LANES + k
-            points[at] += dt * (trace_at(work, k) - mean) if live else 0.0
-            ratio = now / before * exponential(points[at])
-            ratio = 1.0 if abs(ratio - 1.0) < ROUNDING else ratio
-            point_ratio = work[VOLUME * LANES + k] / start[k]
-            work[RATIO * LANES + k] = ratio if live else 1.0
-            work[SPECIFIC * LANES + k] = (point_ratio if live else 1.0) / law.density
-            for row in range(GRADIENT * LANES, (GRADIENT + 9) * LANES, LANES):
-                work[row + k] = work[row + k] if live else 0.0
-
-
-@njit(**FAST_LANEWISE)
-def trace_at(work, k):  # type: ignore[no-untyped-def]
-    """Trace [1/s] of the velocity gradient of a lane."""
-    at = GRADIENT * LANES + k
-    return work[at] + work[at + 4 * LANES] + work[at + 8 * LANES]
 
 
 @njit(**FAST_LANEWISE)

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from quintet.components.fe_plate.meshes import tetrahedra
 from quintet.components.fe_plate.meshes.arrays import Array, Whole
 from quintet.interfaces.errors import SceneError
 
@@ -32,6 +33,8 @@ def require_sound(where: str, node: Array, corner: Whole) -> list[str]:
         raise SceneError(
             f"{where}: coordinates must be finite; those of {wrong} nodes are not. Export it again."
         )
+    if corner.shape[1] == tetrahedra.NODES:
+        return tetrahedra.require_sound(where, node, corner)
     ordered = np.sort(corner, axis=1)
     collapsed = np.flatnonzero((ordered[:, 1:] == ordered[:, :-1]).any(axis=1))
     if len(collapsed):

@@ -1,4 +1,4 @@
-"""Meshes of 8-node solids from files: of LS-DYNA, or in any format that meshio reads.
+"""Meshes of solids from files: of LS-DYNA, or in any format that meshio reads.
 
 Nothing is imported unless a scene names a file.
 """
@@ -13,17 +13,24 @@ import numpy as np
 from quintet.components.fe_plate.meshes.abaqus import require_readable
 from quintet.components.fe_plate.meshes.arrays import Array, Whole
 from quintet.components.fe_plate.meshes.coincidence import first_at_place, pieces
-from quintet.components.fe_plate.meshes.source import Source, as_source, of_parts
+from quintet.components.fe_plate.meshes.source import (
+    FOUR_NODES,
+    HEXAHEDRON,
+    SOLIDS,
+    Source,
+    as_source,
+    of_parts,
+    with_midside_nodes,
+)
+from quintet.components.fe_plate.meshes.tetrahedra import NODES, least_spacing
 from quintet.interfaces.errors import SceneError
-
-SOLID = "hexahedron"
 
 
 class FileMesh(NamedTuple):
     """What is used of a file: nodes of its elements alone."""
 
     node: Array  # (n, 3), in units of the file
-    corner: Whole  # (e, 8) nodes
+    corner: Whole  # (e, 8) nodes of hexahedra, or (e, 10) of tetrahedra
     sets: dict[str, Whole]  # nodes (k,) of each named set
     groups: dict[str, Whole]  # elements (k,) of each named set
     notes: tuple[str, ...]  # of what is left out
@@ -32,7 +39,7 @@ class FileMesh(NamedTuple):
 
 @cache
 def read(file: str, coincident: str = "refuse", parts: tuple[int | str, ...] = ()) -> FileMesh:
-    """Read the 8-node solids, their nodes, and the sets of both that the file names.
+    """Read the solids of a kind, their nodes, and the sets of both that the file names.
 
     Parameters
     ----------
@@ -45,7 +52,10 @@ def read(file: str, coincident: str = "refuse", parts: tuple[int | str, ...] = (
     """
     name, source = Path(file).name, _parsed(file)
     source = of_parts(name, source, parts) if parts else _all_parts(name, source)
-    corner, points = _solids(name, source), source.points
+    if _kind(name, source) == FOUR_NODES:
+        source = with_midside_nodes(name, source)
+    solids = [block.data for block in source.cells if block.type in SOLIDS and len(block.data)]
+    corner, points = np.concatenate(solids).astype(np.int64), source.points
     notes = [*source.notes, *_left_out(name, source, np.unique(corner))]
     same = np.arange(len(points))
     if coincident != "keep":
@@ -63,6 +73,14 @@ def read(file: str, coincident: str = "refuse", parts: tuple[int | str, ...] = (
         sets[key] = np.flatnonzero(np.isin(used, members))
         if (lost := len(members) - len(sets[key])) and not parts:
             notes.append(f"mesh {name}: {lost} nodes of its set {key} belong to no solid.")
+    for key, nodes in _marked(source).items():
+        if key not in sets:
+            members = np.unique(same[nodes])
+            sets[key] = np.flatnonzero(np.isin(used, members))
+            notes.append(
+                f"mesh {name}: its set {key} of faces or edges names the {len(sets[key])} nodes on "
+                "them."
+            )
     groups = _groups(name, source, notes)
     velocity = None if source.velocity is None else source.velocity[used]
     return FileMesh(points[used], corner, sets, groups, tuple(notes), velocity)
@@ -104,37 +122,40 @@ def _all_parts(name: str, source: Source) -> Source:
             "parts."
         )
     for block in source.cells:
-        if block.dim == 3:
+        if block.type == HEXAHEDRON:
             source.check(np.arange(len(block.data)))
     return source
 
 
-def _solids(name: str, source: Source) -> Whole:
-    """Corners (e, 8) of all blocks of 8-node solids; other solids are refused."""
-    kinds, others = Counter[str](), Counter[str]()
+def _kind(name: str, source: Source) -> str:
+    """Kind of all solids, hexahedra or tetrahedra; others, and those of several, are refused."""
+    kinds, solids = Counter[str](), Counter[str]()
     for block in source.cells:
         kinds[block.type] += len(block.data)
-        if block.dim == 3 and block.type != SOLID:
-            others[block.type] += len(block.data)
-    if not kinds[SOLID]:
+        if block.dim == 3:
+            solids[block.type] += len(block.data)
+    kinds, solids = +kinds, +solids
+    read_kinds = [kind for kind in SOLIDS if solids[kind]]
+    if not read_kinds:
         raise SceneError(
-            f"file {name} must have elements of kind {SOLID}; found "
-            f"{_listed(+kinds) or 'none'}. Mesh it with 8-node solids."
+            f"file {name} must have elements of kind hexahedron, tetra10 or tetra; found "
+            f"{_listed(kinds) or 'none'}. Mesh it with 8-node solids, or with tetrahedra."
         )
-    if others:
+    kind = read_kinds[0]
+    if others := solids - Counter({kind: solids[kind]}):
         raise SceneError(
-            f"file {name} must have no other solids than {SOLID}, for they would be holes; found "
-            f"{_listed(others)} beside {kinds[SOLID]} {SOLID}. Mesh it with 8-node solids alone."
+            f"file {name} must have no other solids than {kind}, for they would be holes; found "
+            f"{_listed(others)} beside {solids[kind]} {kind}. Mesh it with one kind alone, or "
+            "choose parts of one kind by parts."
         )
-    cells = [np.asarray(block.data, np.int64) for block in source.cells if block.type == SOLID]
-    return np.concatenate(cells)
+    return kind
 
 
 def _left_out(name: str, source: Source, used: Whole) -> list[str]:
     """Notes of faces, edges and points beside the solids; shells and beams are refused."""
     marks, lost = Counter[str](), Counter[str]()
     for block in source.cells:
-        if block.type == SOLID or not len(block.data):
+        if block.type in SOLIDS or not len(block.data):
             continue
         data = np.asarray(block.data)
         beside = np.isin(data, used).all(axis=1) if block.dim else np.ones(len(data), bool)
@@ -143,8 +164,8 @@ def _left_out(name: str, source: Source, used: Whole) -> list[str]:
     if lost := +lost:
         raise SceneError(
             f"file {name} must have no shells or beams, for they would be left out; found "
-            f"{_listed(lost)} with nodes that belong to no {SOLID}. Remove them, or mesh them with "
-            "8-node solids."
+            f"{_listed(lost)} with nodes that belong to no solid. Remove them, or mesh them with "
+            "solids."
         )
     if not +marks:
         return []
@@ -175,14 +196,32 @@ def _same_places(name: str, points: Array, corner: Whole, coincident: str) -> Wh
     return same
 
 
+def _marked(source: Source) -> dict[str, Whole]:
+    """Points on the faces, edges and points of each named set that has no solids."""
+    marked = {}
+    for key, blocks in source.cell_sets.items():
+        nodes = []
+        for block, rows in zip(source.cells, blocks, strict=True):
+            members = np.asarray([] if rows is None else rows, np.int64)
+            if len(members) and block.dim == 3:
+                break
+            nodes.append(np.asarray(block.data, np.int64)[members].ravel())
+        else:
+            if sum(map(len, nodes)):
+                marked[key] = np.concatenate(nodes)
+    return marked
+
+
 def _groups(name: str, source: Source, notes: list[str]) -> dict[str, Whole]:
     """Solids of each named set of elements, counted through all blocks of solids."""
-    groups = {}
+    groups, marked = {}, _marked(source)
     for key, blocks in source.cell_sets.items():
+        if key in marked:
+            continue
         rows, first, lost = [np.zeros(0, np.int64)], 0, 0
         for block, chosen in zip(source.cells, blocks, strict=True):
             members = np.asarray([] if chosen is None else chosen, np.int64)
-            if block.type == SOLID:
+            if block.type in SOLIDS:
                 rows.append(first + members)
                 first += len(block.data)
             else:
@@ -194,7 +233,9 @@ def _groups(name: str, source: Source, notes: list[str]) -> dict[str, Whole]:
 
 
 def least_edge(node: Array, corner: Whole) -> float:
-    """Shortest edge of some elements (e, 8), or of quadrilaterals (e, 4)."""
+    """Shortest edge of hexahedra (e, 8) or quadrilaterals (e, 4); half of one of tetrahedra."""
+    if corner.shape[1] == NODES:
+        return least_spacing(node, corner)
     x = node[corner]
     if x.shape[1] == 4:
         return float(np.linalg.norm(x - np.roll(x, 1, axis=1), axis=2).min())

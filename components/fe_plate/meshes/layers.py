@@ -19,6 +19,8 @@ OPPOSITE = np.array([1, 0, 4, 5, 2, 3])  # the side opposite to each
 
 def fewest_layers(part: MeshedPart, dimensions: int = 3) -> int:
     """Fewest elements through an extent in which a part is slender; `MANY` if it is in none."""
+    if part.has_tetrahedra:
+        return MANY  # quadratic in any direction
     if part.shape == "mesh":
         return _of_mesh(part)
     shape = part.geometry

@@ -1,6 +1,7 @@
-"""Meshes of 8-node solids: their outer faces, and which elements meet at a node.
+"""Meshes of solids: their outer faces, and which elements meet at a node.
 
-Corners 0 to 3 of an element go round one side, seen from within, and 4 to 7 stand opposite them.
+Corners 0 to 3 of a hexahedron go round one side, seen from within, and 4 to 7 stand opposite them;
+nodes of tetrahedra are those of `meshes.tetrahedra`.
 """
 
 from collections.abc import Sequence
@@ -16,6 +17,8 @@ from quintet.components.fe_plate.meshes.cylinder import cylinder
 from quintet.components.fe_plate.meshes.files import least_edge
 from quintet.components.fe_plate.meshes.params import MeshedPart
 from quintet.components.fe_plate.meshes.selections import Elements, Faces, NodeSet
+from quintet.components.fe_plate.meshes.tetrahedra import NODES as TETRAHEDRON
+from quintet.components.fe_plate.meshes.tetrahedra import PIECES, outer_triangles
 from quintet.components.shared.geometry.selections import ByBox, ByBoxOrSet, in_box
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.params import unknown
@@ -33,14 +36,21 @@ class Mesh(NamedTuple):
     """Nodes and elements of all parts, one part after another."""
 
     node: Array  # (n, 3) m
-    corner: Whole  # (e, 8) nodes
+    corner: Whole  # (e, 8) nodes of hexahedra, or (e, 10) of tetrahedra
     part: Whole  # (e,)
-    side: Whole  # (f, 4) nodes of the outer faces, seen from outside; of edges two, and -1 twice
+    # (f, 4) nodes of the outer faces, seen from outside; of edges two, and -1 twice; of tetrahedra
+    # four triangles for each face of six nodes, one after another, and -1 once
+    side: Whole
     owner: Whole  # (f,) element of each
     sets: dict[str, Whole]  # nodes of each named set, of files and of the scene
     groups: dict[str, Whole]  # elements of each named set of files
     notes: tuple[str, ...] = ()  # of meshes from files
     velocity: Array | None = None  # (n, 3) m/s at the start, of files; None if none has any
+
+    @property
+    def has_tetrahedra(self) -> bool:
+        """Whether its elements are tetrahedra with ten nodes."""
+        return self.corner.shape[1] == TETRAHEDRON
 
 
 def mesh(parts: Sequence[MeshedPart], dimensions: int = 3, sets: Sequence[NodeSet] = ()) -> Mesh:
@@ -71,6 +81,7 @@ def mesh(parts: Sequence[MeshedPart], dimensions: int = 3, sets: Sequence[NodeSe
         corners.append(corner + first)
         first, count = first + len(node), count + len(corner)
     number = np.repeat(np.arange(len(parts)), [len(rows) for rows in corners])
+    _require_alike(corners)
     corner = np.concatenate(corners)
     outer = outer_sides(corner) if dimensions == 3 else outer_edges(corner)
     node = np.concatenate(nodes)
@@ -84,6 +95,17 @@ def mesh(parts: Sequence[MeshedPart], dimensions: int = 3, sets: Sequence[NodeSe
         named[node_set.name] = np.flatnonzero(inside(node, node_set))
     velocity = _joined(velocities, len(node)) if velocities else None
     return Mesh(node, corner, number, *outer, named, groups, tuple(notes), velocity)
+
+
+def _require_alike(corners: Sequence[Whole]) -> None:
+    """Refuse parts of hexahedra beside parts of tetrahedra."""
+    kinds = [rows.shape[1] for rows in corners]
+    if len(set(kinds)) > 1:
+        raise SceneError(
+            "parts: all of a component must have elements of one kind; found hexahedra in parts."
+            f"{kinds.index(8)} and tetrahedra in parts.{kinds.index(TETRAHEDRON)}. Make two "
+            "components of them, which a link contact may join, or mesh them alike."
+        )
 
 
 def _joined(velocities: list[tuple[int, Array]], nodes: int) -> Array:
@@ -101,7 +123,7 @@ def _require_apart(node: Array, corner: Whole, part: Whole, side: Whole) -> None
     outer = np.unique(side[side >= 0])
     part_of = np.zeros(len(node), np.int64)
     part_of[corner] = part[:, None]
-    planar = bool((corner[0, :4] == corner[0, 4:]).all())
+    planar = bool((corner[0, :4] == corner[0, 4:8]).all())
     shortest = least_edge(node, corner[:, :4] if planar else corner)
     first = outer[first_at_place(node[outer], shortest)]
     shared = np.flatnonzero(part_of[first] != part_of[outer])
@@ -117,7 +139,9 @@ def _require_apart(node: Array, corner: Whole, part: Whole, side: Whole) -> None
 
 
 def outer_sides(corner: Whole) -> tuple[Whole, Whole]:
-    """Sides (f, 4) that belong to one element alone, and that element (f,)."""
+    """Sides (f, 4) that belong to one element alone, and that element (f,); see `Mesh.side`."""
+    if corner.shape[1] == TETRAHEDRON:
+        return outer_triangles(corner)
     side = corner[:, SIDES].reshape(-1, 4)
     owner = np.repeat(np.arange(len(corner)), len(SIDES))
     _, first, count = np.unique(
@@ -168,7 +192,10 @@ def faces_in(mesh: Mesh, boxes: Sequence[Faces], where: str) -> Whole:
     """Numbers of the outer faces all of whose corners lie in one of some boxes, or sets."""
     faces = np.zeros(len(mesh.side), bool)
     for by in boxes:
-        faces |= (chosen(mesh, by, where)[mesh.side] | (mesh.side < 0)).all(axis=1)
+        whole = (chosen(mesh, by, where)[mesh.side] | (mesh.side < 0)).all(axis=1)
+        if mesh.has_tetrahedra:  # all six nodes of a face
+            whole = np.repeat(whole.reshape(-1, len(PIECES)).all(axis=1), len(PIECES))
+        faces |= whole
     return np.flatnonzero(faces)
 
 

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from quintet.components.fe_plate.meshes.elements import require_sound
 from quintet.components.fe_plate.meshes.files import FileMesh, least_edge, read
+from quintet.components.fe_plate.meshes.tetrahedra import NODES as TETRAHEDRON
 from quintet.components.shared.geometry.selections import ByBox
 from quintet.components.shared.geometry.shape_keys import (
     BoxKeys,
@@ -34,7 +35,7 @@ class Cutout(ByBox):
 
 @parameters
 class MeshedPart(BoxKeys, CylinderKeys, MeshKeys):
-    """A box of equal elements, a cylinder of them, or a mesh of 8-node solids from a file.
+    """A box of equal elements, a cylinder of them, or a mesh of solids from a file.
 
     Parameters
     ----------
@@ -44,7 +45,8 @@ class MeshedPart(BoxKeys, CylinderKeys, MeshKeys):
         Of a cylinder: a rounded square in the middle, and rings around it.
     file
         A mesh beside the scene: LS-DYNA keywords (.k, .key), or a format that meshio reads (Abaqus,
-        Gmsh, Nastran, VTK, Exodus ...); shells, beams and other solids in it are refused.
+        Gmsh, Nastran, VTK, Exodus ...), of 8-node hexahedra, or of tetrahedra with 10 nodes, or
+        with 4, which get 6 more; shells, beams and other solids in it are refused.
     scale : m
         What one unit of length in the file stands for; 1 if not given.
     elements : 1
@@ -94,6 +96,14 @@ class MeshedPart(BoxKeys, CylinderKeys, MeshKeys):
     def geometry(self) -> Shape:
         """The shape that the keys describe."""
         return shape_of(self, "part")
+
+    @property
+    def has_tetrahedra(self) -> bool:
+        """Whether its elements are tetrahedra with ten nodes, of a file."""
+        shape = self.geometry
+        if not isinstance(shape, Mesh):
+            return False
+        return read(shape.file, self.coincident_nodes, self.parts).corner.shape[1] == TETRAHEDRON
 
     @property
     def counts(self) -> tuple[int, int, int]:
@@ -181,7 +191,7 @@ def mesh_notes(parts: Sequence[MeshedPart]) -> tuple[str, ...]:
 
 @parameters
 class Part(MeshedPart):
-    """A box of equal elements, a cylinder of them, or a mesh of 8-node solids from a file.
+    """A box of equal elements, a cylinder of them, or a mesh of solids from a file.
 
     Parameters
     ----------

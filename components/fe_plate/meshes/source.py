@@ -6,8 +6,12 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from quintet.components.fe_plate.meshes.arrays import Array, Whole
+from quintet.components.fe_plate.meshes.tetrahedra import raised
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.params import unknown
+
+HEXAHEDRON, TETRAHEDRON, FOUR_NODES = "hexahedron", "tetra10", "tetra"
+SOLIDS = (HEXAHEDRON, TETRAHEDRON, FOUR_NODES)  # kinds that are read
 
 
 class Cells(NamedTuple):
@@ -32,7 +36,7 @@ class Source(NamedTuple):
     velocity: Array | None = None  # (p, 3) in units of the file
     notes: tuple[str, ...] = ()
     foreign: dict[str, int] = {}  # noqa: RUF012, never written; blocks of other elements, unread
-    check: Callable[[Whole], None] = _accept  # of solids by their rows; raises SceneError
+    check: Callable[[Whole], None] = _accept  # of hexahedra by their rows; raises SceneError
 
 
 def as_source(mesh: Any) -> Source:
@@ -66,7 +70,7 @@ def of_parts(name: str, source: Source, parts: Sequence[int | str]) -> Source:
             if rows is not None:
                 flags[rows] = True
     for block, flags in zip(source.cells, chosen, strict=True):
-        if block.dim == 3:
+        if block.type == HEXAHEDRON:
             source.check(np.flatnonzero(flags))
     cells = [
         block._replace(data=block.data[flags])
@@ -87,3 +91,35 @@ def _kept(rows: Whole, flags: np.ndarray) -> Whole:
     numbers = np.cumsum(flags) - 1
     rows = np.asarray(rows, np.int64)
     return np.asarray(numbers[rows[flags[rows]]], np.int64)
+
+
+def with_midside_nodes(name: str, source: Source) -> Source:
+    """Make tetrahedra of ten nodes from those of four.
+
+    A new node belongs to the sets that both ends of its edge belong to, and has their mean
+    velocity.
+    """
+    at = [number for number, block in enumerate(source.cells) if block.type == FOUR_NODES]
+    corner = np.concatenate([source.cells[number].data for number in at])
+    points, nodes, ends = raised(source.points, corner)
+    cells, first = list(source.cells), 0
+    for number in at:
+        count = len(cells[number].data)
+        cells[number] = Cells(TETRAHEDRON, 3, nodes[first : first + count])
+        first += count
+    sets = {}
+    for key, members in source.point_sets.items():
+        rows = np.unique(np.asarray(members, np.int64))
+        both = np.isin(ends, rows).all(axis=1)
+        sets[key] = np.append(rows, len(source.points) + np.flatnonzero(both))
+    velocity = source.velocity
+    if velocity is not None:
+        velocity = np.concatenate([velocity, velocity[ends].mean(axis=1)])
+    note = (
+        f"mesh {name}: {len(corner)} tetrahedra of four nodes got {len(ends)} more in the middles "
+        "of their edges; curved surfaces stay as they were cut. A new node is in the sets that "
+        "both ends of its edge are in."
+    )
+    return source._replace(
+        points=points, cells=cells, point_sets=sets, velocity=velocity, notes=(*source.notes, note)
+    )

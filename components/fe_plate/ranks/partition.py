@@ -78,8 +78,9 @@ def _cells(built: Structure) -> tuple[Whole, Whole, Array]:
     the last is cut, and a rank's blocks and nodes stand one after another.
     """
     model, blocks = built.model, len(built.model.filled)
-    # Opposite corners of the elements of a block.
-    ends = built.mesh.node[model.corner[:, [0, 6]]].reshape(blocks, -1, 3)
+    # Opposite corners of the elements of a block; all four of tetrahedra.
+    opposite = [0, 1, 2, 3] if built.mesh.has_tetrahedra else [0, 6]
+    ends = built.mesh.node[model.corner[:, opposite]].reshape(blocks, -1, 3)
     low, high = ends.min(axis=1), ends.max(axis=1)
     size = np.median(high - low, axis=0)
     size[size == 0.0] = 1.0
@@ -149,7 +150,9 @@ def cut(
     row[part.node] = np.arange(len(part.node))
     block_row: Whole = np.full(blocks, -1)
     block_row[part.block] = np.arange(len(part.block))
-    corner = row[model.corner.reshape(blocks, -1, 8)[part.block].reshape(-1, 8)].astype(np.uint32)
+    corners = model.corner.shape[1]  # of an element
+    corner = model.corner.reshape(blocks, -1, corners)[part.block].reshape(-1, corners)
+    corner = row[corner].astype(np.uint32)
     filled = model.filled[part.block]
     target, acts, parted = targets(corner, filled, [*inner, *border], ends, len(part.node))
     faces = np.flatnonzero(block_row[built.face_places.point[:, 0] // LANES] >= 0)
@@ -161,7 +164,7 @@ def cut(
     return built._replace(
         # Corners of elements stand in the model alone.
         mesh=Mesh(
-            mesh.node[part.node], np.zeros((0, 8), np.int64), mesh.part[part.element], side,
+            mesh.node[part.node], np.zeros((0, corners), np.int64), mesh.part[part.element], side,
             mesh.owner[faces], {}, {}, (), velocity,
         ),
         model=model._replace(

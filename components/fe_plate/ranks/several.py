@@ -70,7 +70,9 @@ class SeveralRanks:
         """Return outer faces and sets of nodes on rank 0: all else can be gathered."""
         none: Whole = np.zeros(0, np.int64)  # a slice would hold the whole array
         side, owner, sets = (none.reshape(0, 4), none, {}) if self.rank else mesh[3:6]
-        return Mesh(np.zeros((0, 3)), none.reshape(0, 8), none, side, owner, sets, {})
+        return Mesh(
+            np.zeros((0, 3)), none.reshape(0, mesh.corner.shape[1]), none, side, owner, sets, {}
+        )
 
     def mesh_to_show(self, mesh: Mesh, built: Structure) -> Mesh:
         """Return the mesh with the nodes and corners of all ranks on rank 0, but without parts."""

@@ -198,7 +198,7 @@ def test_a_set_that_a_file_names_already_is_refused(tmp_path):
 
 
 def test_files_without_cells_are_refused(tmp_path):
-    with pytest.raises(SceneError, match="must have elements of kind hexahedron; found"):
+    with pytest.raises(SceneError, match="elements of kind hexahedron, tetra10 or tetra; found"):
         count(write(tmp_path, CUBE, [("vertex", np.arange(8)[:, None])]))
 
 

@@ -9,15 +9,19 @@ from quintet.components.fe_plate.meshes.arrays import Whole
 from quintet.components.fe_plate.meshes.ls_dyna.cards import Block, Card, blocks
 from quintet.components.fe_plate.meshes.ls_dyna.entries import (
     SETS,
+    SOLIDS,
     Element,
     Entries,
     Listed,
     read_entries,
     require_eight_nodes,
+    tetrahedron_of,
 )
 from quintet.components.fe_plate.meshes.ls_dyna.velocities import KEYWORDS, velocities
-from quintet.components.fe_plate.meshes.source import Cells, Source
+from quintet.components.fe_plate.meshes.source import FOUR_NODES as TETRA
+from quintet.components.fe_plate.meshes.source import HEXAHEDRON, TETRAHEDRON, Cells, Source
 
+KINDS = (HEXAHEDRON, TETRAHEDRON, TETRA)
 SUFFIXES = (".k", ".key")
 SILENT = ("KEYWORD", "TITLE")
 
@@ -29,9 +33,9 @@ def read_deck(path: Path) -> Source:
     for block in blocks(path):
         if block.keyword in KEYWORDS:
             moving.append(block)
-        elif block.keyword.startswith("ELEMENT_SOLID_"):
-            rule = "solids must be *ELEMENT_SOLID"
-            block.head.refuse(rule, f"*{block.keyword}", "Mesh it with 8-node solids.")
+        elif block.keyword.startswith("ELEMENT_SOLID_") and block.keyword not in SOLIDS:
+            rule = "solids must be *ELEMENT_SOLID, or tetrahedra of *ELEMENT_SOLID_TET4TOTET10"
+            block.head.refuse(rule, f"*{block.keyword}", "Mesh it with these.")
         elif read_entries(block, entries) or block.keyword in SILENT:
             continue
         elif block.keyword.startswith("ELEMENT_"):
@@ -52,7 +56,13 @@ class _Numbers:
         self.part = np.array([solid.part for solid in entries.solids.values()], np.int64)
         shells = [shell.part for shell in entries.shells.values()]
         self.part_ids = np.union1d(self.part, np.array([*shells, *entries.titles], np.int64))
-        self.corner = self._corners(entries.solids, 8)
+        # (e, 10), -1 where there is none; of tetrahedra their four or ten nodes come first
+        solids = entries.solids
+        found = {number: tetrahedron_of(solid) for number, solid in solids.items()}
+        # (e,) nodes of tetrahedra, 0 of hexahedra
+        self.tetrahedra = np.array([len(nodes) for nodes in found.values()], np.int64)
+        chosen = {k: solid._replace(nodes=found[k] or solid.nodes) for k, solid in solids.items()}
+        self.corner = self._corners(chosen, 10)
 
     def _corners(self, elements: dict[int, Element], count: int) -> Whole:
         """Rows (e, c) of the nodes of elements; -1 where a number is 0."""
@@ -62,14 +72,19 @@ class _Numbers:
                 if number and number not in row:
                     rule = "an element must have nodes of the file"
                     element.card.refuse(rule, f"{number}, which is none", "Add or correct it.")
-            rows[:] = [row.get(number, -1) for number in element.nodes[:count]]
+            nodes = element.nodes[:count]
+            rows[: len(nodes)] = [row.get(number, -1) for number in nodes]
         return corner
 
     def source(self, moving: list[Block], skipped: Counter[str], foreign: Counter[str]) -> Source:
         """Return the mesh as other readers do."""
         places = [place for place, _ in self.entries.nodes.values()]
         points = np.array(places, np.float64).reshape(-1, 3)
-        cells = [Cells("hexahedron", 3, self.corner)]
+        kinds = [np.flatnonzero(self.tetrahedra == nodes) for nodes in (0, 10, 4)]
+        cells = [
+            Cells(kind, 3, self.corner[rows, :nodes])
+            for kind, rows, nodes in zip(KINDS, kinds, (8, 10, 4), strict=True)
+        ]
         shells = self._corners(self.entries.shells, 4)
         if len(shells):
             cells.append(Cells("quad", 2, shells))
@@ -88,7 +103,13 @@ class _Numbers:
             points,
             cells,
             sets,
-            {key: [rows, *[None] * (len(cells) - 1)] for key, rows in groups.items()},
+            {
+                key: [
+                    *[np.searchsorted(kind, rows[np.isin(rows, kind)]) for kind in kinds],
+                    *[None] * (len(cells) - len(kinds)),
+                ]
+                for key, rows in groups.items()
+            },
             velocities(moving, points, self.nodes_of),
             tuple(notes),
             dict(foreign),
@@ -96,11 +117,11 @@ class _Numbers:
         )
 
     def require_eight_nodes(self, rows: Whole) -> None:
-        """Refuse solids, by their rows, that have other numbers of nodes."""
-        for solid, row in zip(self.entries.solids.values(), self.corner, strict=True):
-            if len(solid.nodes) > 8:
-                row[:] = -1  # found below
-        ordered = np.sort(self.corner[rows], axis=1)
+        """Refuse hexahedra, by their rows, that have other numbers of nodes."""
+        rows = np.flatnonzero(self.tetrahedra == 0)[rows]
+        corner = self.corner[rows]
+        corner[(corner[:, 8:] >= 0).any(axis=1)] = -1  # found below
+        ordered = np.sort(corner[:, :8], axis=1)
         wrong = (ordered[:, 0] < 0) | (ordered[:, 1:] == ordered[:, :-1]).any(axis=1)
         if wrong.any():
             number = int(self.solid_ids[rows[np.argmax(wrong)]])

@@ -16,9 +16,10 @@ OF_OTHERS = (10,) * 8
 SETS = {"SET_NODE": "set", "SET_PART": "part set", "SET_SOLID": "solid set"}
 SET_OPTIONS = {"LIST", "TITLE", "GENERATE"}
 # By the number of different nodes.
-DEGENERATE = {
-    4: "a tetrahedron", 5: "a pyramid", 6: "a wedge", 10: "a tetrahedron of 10 nodes"
-}  # fmt: skip
+DEGENERATE = {4: "a tetrahedron with its nodes in another order", 5: "a pyramid", 6: "a wedge"}
+SOLIDS = ("ELEMENT_SOLID", "ELEMENT_SOLID_TET4TOTET10")
+# Places of the four nodes of a tetrahedron in the eight of a solid; later ones are repeated.
+FOUR_OF_EIGHT = ((0, 1, 2, 3, 3, 3, 3, 3), (0, 1, 2, 2, 3, 3, 3, 3))
 
 
 class Element(NamedTuple):
@@ -56,7 +57,7 @@ def read_entries(block: Block, entries: Entries) -> bool:
     head = "_".join([kind, *options[:1]])
     if block.keyword == "NODE":
         _nodes(block, entries)
-    elif block.keyword == "ELEMENT_SOLID":
+    elif block.keyword in SOLIDS:
         _solids(block, entries)
     elif block.keyword == "ELEMENT_SHELL":
         for card in filled(block):
@@ -104,14 +105,25 @@ def _solids(block: Block, entries: Entries) -> None:
         _add(entries.solids, number, Element(part, nodes, card), "solid")
 
 
+def tetrahedron_of(solid: Element) -> list[int]:
+    """Nodes of a tetrahedron, ten or four, as a solid of LS-DYNA has them; none of others."""
+    nodes = [node for node in solid.nodes if node]
+    if len(nodes) == 10 and len(set(nodes)) == 10:
+        return nodes
+    four = list(dict.fromkeys(nodes))
+    orders = [[four[k] for k in order] for order in FOUR_OF_EIGHT] if len(four) == 4 else []
+    return four if len(nodes) == 4 == len(four) or nodes in orders else []
+
+
 def require_eight_nodes(number: int, solid: Element) -> None:
     """Refuse a solid that is written with 8 nodes, but is another one."""
     different = len({node for node in solid.nodes if node})
     if different == 8 and len(solid.nodes) == 8 and all(solid.nodes):
         return
     finding = DEGENERATE.get(different, f"one of {different} different nodes")
-    cure = "Mesh it with 8-node solids alone, or choose other parts."
-    solid.card.refuse(f"solid {number} must have 8 different nodes", finding, cure)
+    cure = "Mesh it with 8-node solids or tetrahedra alone, or choose other parts."
+    rule = f"solid {number} must have 8 different nodes, or those of a tetrahedron"
+    solid.card.refuse(rule, finding, cure)
 
 
 def _parts(block: Block, entries: Entries) -> None:

@@ -1,0 +1,214 @@
+"""Tetrahedra with ten nodes: patch test, modes, step, plastic flow, loads."""
+
+import numpy as np
+import pytest
+from tetrahedra import box, curved, regular, written
+
+from quintet.components.fe_plate.component import FePlate
+from quintet.components.fe_plate.meshes.params import Part
+from quintet.components.fe_plate.meshes.selections import Faces, Fixed
+from quintet.components.fe_plate.params import FePlateParams, Pressure
+from quintet.components.fe_plate.state import DEVIATOR, PRESSURE, STRAIN, at_points
+from quintet.components.shared.materials.params import JohnsonCook, Material
+from quintet.interfaces.errors import SceneError
+
+E, NU, RHO = 7e10, 0.3, 2700.0
+CALM = {"viscosity_linear": 0.0, "viscosity_quadratic": 0.0}
+EVERYWHERE = Faces(lowest=(-9.0,) * 3, highest=(9.0,) * 3)
+ELASTIC = Material(density=RHO, youngs_modulus=E, poissons_ratio=NU)
+PERFECT = Material(
+    density=RHO, youngs_modulus=E, poissons_ratio=NU, johnson_cook=JohnsonCook(a=1e8)
+)
+
+
+def structure(folder, mesh, material=ELASTIC, velocity=None, **given):
+    file = written(folder / "mesh.vtk", *mesh)
+    part = Part(shape="mesh", file=file, material=material, velocity=velocity)
+    return FePlate(FePlateParams(parts=(part,), **CALM | given))
+
+
+def moved_to(made, places, dt=1e-12):
+    """Move all nodes to some places within a step, and write the forces there."""
+    made.state.forces[:] = 0.0
+    made.state.velocity[:] = (places - made.state.position) / dt
+    made.step(dt)
+
+
+def stiffness(made, moved=1e-9, dt=1e-12):
+    """Matrix K [N/m] of all nodes, found column by column."""
+    state, size = made.save(), made.state.position.size
+    columns = np.empty((size, size))
+    for column in range(size):
+        made.load(state)
+        made.state.forces[:] = 0.0
+        made.state.velocity[:] = 0.0
+        made.state.velocity.ravel()[column] = moved / dt
+        made.step(dt)
+        columns[:, column] = -made.state.internal.ravel() / moved
+    made.load(state)
+    assert np.abs(columns - columns.T).max() < 1e-6 * np.abs(columns).max()
+    return 0.5 * (columns + columns.T)
+
+
+def squares(made):
+    """ω² [1/s2] of all modes."""
+    root = np.repeat(np.sqrt(made.model.inverse_mass), 3)
+    return np.linalg.eigvalsh(root[:, None] * stiffness(made) * root)
+
+
+@pytest.fixture(scope="module")
+def one(tmp_path_factory):
+    return structure(tmp_path_factory.mktemp("one"), regular(0.01))
+
+
+def test_an_element_has_its_volume_and_positive_masses_at_its_nodes(one):
+    volume = 0.01**3 / np.sqrt(72.0)
+    assert one.built.volume.sum() == pytest.approx(volume, rel=1e-12)
+    assert one.built.mass[:4] == pytest.approx(RHO * volume / 36.0, rel=1e-12)
+    assert one.built.mass[4:] == pytest.approx(RHO * volume * 4.0 / 27.0, rel=1e-12)
+
+
+def test_no_mode_but_rigid_motion_is_without_energy(one):
+    found = squares(one)
+    assert (np.abs(found[:6]) < 1e-6 * found[-1]).all() and found[6] > 1e-3 * found[-1]
+
+
+@pytest.mark.parametrize(("bent", "rest"), [(0.0, 1e-9), (0.01, 3e-4)])
+def test_the_patch_test_is_passed_to_rounding(bent, rest, tmp_path):
+    """A linear displacement strains all points alike; inner nodes feel no force.
+
+    Of curved elements ∇N dV is of third order, which four points do not sum exactly: midside nodes
+    2 % of an edge away leave 1e-4 of the forces at the surface.
+    """
+    node, corner = box((2, 2, 2), shaken=0.15)
+    made = structure(tmp_path, (curved(node, corner, bent), corner))
+    node = made.mesh.node
+    strain = 1e-4 * np.array([[1.0, 0.4, -0.3], [0.4, -0.5, 0.7], [-0.3, 0.7, 0.2]])
+    moved_to(made, node + node @ strain)
+    lame, shear = E * NU / (1.0 + NU) / (1.0 - 2.0 * NU), 0.5 * E / (1.0 + NU)
+    expected = 2.0 * shear * (strain - np.trace(strain) / 3.0 * np.eye(3))
+    points = made.places.point
+    for row, at in enumerate(((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0))):
+        found = at_points(made.state.points, DEVIATOR + row, points)
+        np.testing.assert_allclose(found, expected[at], rtol=0.0, atol=3e-4 * 2.0 * shear * 1e-4)
+        assert np.ptp(found) < 1e-9 * shear * 1e-4
+    pressure = at_points(made.state.points, PRESSURE, points)
+    assert pressure == pytest.approx(-(lame + 2 / 3 * shear) * np.trace(strain), rel=1e-3)
+    inner = ((node > 1e-9) & (node < 1.0 - 1e-9)).all(axis=1)
+    assert inner.sum() > 20
+    push = np.abs(made.state.internal).max()
+    assert np.abs(made.state.internal[inner]).max() < rest * push
+
+
+def turning(steps, whole=2.0):
+    """Rotations about an oblique axis, up to an angle [rad]."""
+    axis = np.array([1.0, 2.0, 2.0]) / 3.0
+    cross = -np.cross(np.eye(3), axis)
+    for angle in np.linspace(0.0, whole, steps + 1)[1:]:
+        yield np.eye(3) + np.sin(angle) * cross + (1.0 - np.cos(angle)) * cross @ cross
+
+
+def test_a_large_rotation_strains_nothing(tmp_path):
+    node, corner = box((2, 1, 1), shaken=0.1)
+    made = structure(tmp_path, (node, corner))
+    for turn in turning(20):  # of 115 degrees in all
+        moved_to(made, node @ turn.T)
+    assert np.abs(made.state.points[:, : PRESSURE + 1]).max() < 1e-12 * E
+
+
+def test_a_large_rotation_turns_the_stress(tmp_path):
+    """By Jaumann's rate: the error is of first order in the angle of a step, 2 mrad."""
+    node, corner = box((2, 1, 1), shaken=0.1)
+    made = structure(tmp_path, (node, corner))
+    strained = node @ (np.eye(3) + 1e-4 * np.diag([1.0, -0.5, 0.3]))
+    moved_to(made, strained)
+    before = made.state.internal.copy()
+    for turn in turning(1000):
+        moved_to(made, strained @ turn.T)
+    assert np.abs(made.state.internal - before @ turn.T).max() < 4e-3 * np.abs(before).max()
+
+
+def test_a_uniform_pressure_on_all_faces_is_borne_by_a_uniform_stress(tmp_path):
+    """No node is left with a force."""
+    node, corner = box((2, 2, 2), shaken=0.15)
+    load = Pressure(faces=EVERYWHERE, pressure=1e6)
+    made = structure(tmp_path, (node, corner), pressures=(load,))
+    bulk = E / 3.0 / (1.0 - 2.0 * NU)
+    moved_to(made, node * (1.0 + 1e6 / bulk) ** (-1.0 / 3.0))
+    made.state.velocity[:] = 0.0
+    made.step(1e-15)
+    push = np.abs(made.state.load).max()
+    assert np.abs(made.state.load.sum(axis=0)).max() < 1e-12 * np.abs(made.state.load).sum()
+    assert np.abs(made.state.internal + made.state.load).max() < 1e-6 * push
+    corners = np.unique(corner[:, :4])
+    assert np.abs(made.state.load[corners]).max() < 1e-9 * push  # flat faces load middles alone
+
+
+def test_the_proven_step_is_below_the_stable_one_and_not_by_far(one, tmp_path):
+    """Shares of 2/ω_max: 0.59 of a regular tetrahedron, 0.56 of six in a cube, 0.35 of shaken."""
+    shares = {}
+    shares["regular"] = one.bound * np.sqrt(squares(one)[-1]) / 2.0
+    for name, shaken in (("cube", 0.0), ("shaken", 0.25)):
+        made = structure(tmp_path, box((2, 2, 2), (0.02,) * 3, shaken))
+        shares[name] = made.bound * np.sqrt(squares(made)[-1]) / 2.0
+    assert shares["regular"] == pytest.approx(0.59, abs=0.01)
+    assert shares["cube"] == pytest.approx(0.56, abs=0.01)
+    assert 0.3 < shares["shaken"] < 0.65
+
+
+@pytest.mark.parametrize(("share", "grows"), [(0.97, False), (1.05, True)])
+def test_the_stable_step_is_where_the_greatest_frequency_puts_it(share, grows, one):
+    dt = share * 2.0 / np.sqrt(squares(one)[-1])
+    state = one.save()
+    one.state.velocity[:] = 1e-3 * np.random.default_rng(3).standard_normal((10, 3))
+    start = one.totals().kinetic
+    largest = 0.0
+    for _ in range(200):
+        one.step(dt)
+        largest = max(largest, one.totals().kinetic)
+        if largest > 1e3 * start:
+            break
+    one.load(state)
+    assert (largest > 100.0 * start) == grows
+
+
+def test_energy_is_kept_with_plastic_flow_and_large_strains(tmp_path):
+    made = structure(
+        tmp_path, box((2, 2, 4), (0.01, 0.01, 0.02), 0.1), PERFECT, courant=0.9,
+        fixed=(Fixed(lowest=(0.0,) * 3, highest=(0.01, 0.01, 0.0)),),
+    )  # fmt: skip
+    made.state.velocity[:, 2] = -80.0 * made.mesh.node[:, 2] / 0.02
+    first = made.totals()
+    for _ in range(600):
+        made.step(made.stable_dt())
+    last = made.totals()
+    assert made.places.of(made.state, STRAIN).max() > 0.05
+    gained = last.kinetic + last.internal - first.kinetic
+    assert abs(gained) < 0.01 * first.kinetic
+
+
+@pytest.mark.parametrize("yields", [False, True])
+def test_plastic_flow_keeps_the_volume_of_elements_and_not_of_points(yields, tmp_path):
+    """Pressures of the four points change alike once an element has yielded, and never before."""
+    made = structure(tmp_path, regular(0.01), PERFECT if yields else ELASTIC)
+    sheared = np.eye(3) + 0.01 * np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 0.0], [0.0, 0.0, 0.0]])
+    node = made.mesh.node
+    moved_to(made, node @ sheared.T)
+    pushed = np.random.default_rng(4).uniform(-1e-5, 1e-5, node.shape)
+    moved_to(made, node @ sheared.T + pushed)
+    pressure = made.state.points[0, PRESSURE, :4]
+    assert (made.state.points[0, STRAIN, :4] > 0.0).all() == yields
+    assert (np.ptp(pressure) < 1e-9 * np.abs(pressure).max()) == yields
+
+
+def test_one_point_is_refused(tmp_path):
+    with pytest.raises(SceneError, match=r"four quadrature points.*found \"reduced\""):
+        structure(tmp_path, regular(), integration="reduced")
+
+
+def test_hexahedra_and_tetrahedra_in_one_component_are_refused(tmp_path):
+    file = written(tmp_path / "mesh.vtk", *regular())
+    tetrahedron = Part(shape="mesh", file=file, origin=(9.0, 0.0, 0.0), material=ELASTIC)
+    cube = Part(lowest=(0.0,) * 3, highest=(1.0,) * 3, elements=(1, 1, 1), material=ELASTIC)
+    with pytest.raises(SceneError, match=r"hexahedra in parts.0 and tetrahedra in parts.1. Make"):
+        FePlate(FePlateParams(parts=(cube, tetrahedron)))
