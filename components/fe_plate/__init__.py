@@ -2,14 +2,15 @@
 
     M dv/dt = Σ F - ∫ Bᵀσ dV + m g,   dx/dt = v
 
-Hexahedra: one quadrature point an element, with the mean gradient ∂N/∂x of its corners, so that it passes the
-patch test on distorted meshes; what that point does not see is held by the stabilisation of
-Flanagan and Belytschko. Stress by Jaumann's rate at the middle of the step, flow stress of Johnson
-and Cook, equation of state of Mie and Grüneisen, linear and quadratic bulk viscosity; elements that
-fail are eroded and their mass stays at the nodes. Velocity Verlet: velocities are known at the
-steps' ends, and the impulse of a load is its force times the step to rounding.
+Hexahedra have one quadrature point, with the mean gradient ∂N/∂x of the corners, so that they pass
+the patch test on distorted meshes; what that point does not see is held by the stabilisation of
+Flanagan and Belytschko. Tetrahedra have four points. Stress by Jaumann's rate at the middle of the
+step, flow stress of Johnson and Cook, equation of state of Mie and Grüneisen, linear and quadratic
+bulk viscosity; elements that fail are eroded and their mass stays at the nodes. Velocity Verlet:
+velocities are known at the steps' ends, and the impulse of a load is its force times the step to
+rounding.
 
-Of all elements the step is bounded by 2/ω with ω² ≤ 2 (K + 4G/3)/ρ Σ B², a proven bound of the
+Of all hexahedra the step is bounded by 2/ω with ω² ≤ 2 (K + 4G/3)/ρ Σ B², a proven bound of the
 greatest frequency (0.58 of the stable step of cubes).
 
 Papers: Flanagan & Belytschko, Int. J. Numer. Methods Eng. 17 (1981) 679; Belytschko, Liu, Moran &

@@ -5,8 +5,8 @@ from typing import Any
 from quintet.interfaces.manifest import BenchCase
 
 
-def block(nx: int, ny: int, nz: int) -> dict[str, Any]:
-    """Table of a scene: a block of cubes of 0.4 mm that flies against a wall."""
+def block(nx: int, ny: int, nz: int, tetrahedra: bool = False) -> dict[str, Any]:
+    """Table of a scene: a block of cubes of 0.4 mm, or six in each, that flies against a wall."""
     edge = 4e-4  # m
     return {
         "parts": [
@@ -14,6 +14,7 @@ def block(nx: int, ny: int, nz: int) -> dict[str, Any]:
                 "lowest": [0.0, 0.0, 0.0],
                 "highest": [nx * edge, ny * edge, nz * edge],
                 "elements": [nx, ny, nz],
+                "tetrahedra": tetrahedra,
                 "material": "steel",
                 "velocity": [0.0, 0.0, -100.0],
             }
@@ -31,6 +32,17 @@ def cases() -> tuple[BenchCase, ...]:
         *(
             BenchCase(f"{series}, {name}", block(*size), 20, 100, unit, series=series)
             for name, size in sizes.items()
+        ),
+        *(
+            BenchCase(
+                f"tetrahedra, {name}",
+                block(*size, tetrahedra=True),
+                10,
+                40,
+                unit,
+                series="tetrahedra",
+            )
+            for name, size in {"6k": (10, 10, 10), "55k": (21, 21, 21)}.items()
         ),
         BenchCase(f"{series}, 1M", block(100, 100, 100), 10, 20, unit, series=series),
     )

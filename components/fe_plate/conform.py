@@ -21,7 +21,7 @@ STEP = 2e-7  # s
 
 
 def cases() -> tuple[ConformCase, ...]:
-    """An elastic block, free; yielding steel, clamped, with one and eight points an element."""
+    """An elastic block, free; yielding steel, clamped, of hexahedra and tetrahedra."""
     steel = {**BLOCK["parts"][0], "material": "steel"}
     clamped = {
         "parts": [steel],
@@ -31,11 +31,13 @@ def cases() -> tuple[ConformCase, ...]:
         _case("free block", BLOCK, forces=("node_load.force",)),
         _case("clamped steel", clamped),
         _case("eight points", {**clamped, "integration": "full"}),
+        _case("tetrahedra", {**clamped, "parts": [{**steel, **TETRAHEDRA}]}, nodes=130),
         _case("plane strain", PLANE, nodes=10),
         _case("face of a block", {**BLOCK, "coupled_faces": [FACE]}, nodes=9),
     )
 
 
+TETRAHEDRA = {"elements": [3, 2, 2], "tetrahedra": True}  # 175 nodes, less 5 x 3 x 3 inside
 PLANE = {
     "parts": [{**BLOCK["parts"][0], "highest": [0.03, 1.0, 0.02], "elements": [3, 1, 2]}],
     "dimensions": 2,

@@ -42,6 +42,14 @@ class ConductingPart(MeshedPart):
     specific_heat: Positive | None = None
     temperature: NotNegative = 298.0
 
+    def __post_init__(self) -> None:
+        MeshedPart.__post_init__(self)
+        if self.tetrahedra:
+            raise ValueError(
+                "part: heat is conducted through hexahedra alone; found tetrahedra = true. Leave "
+                "it out."
+            )
+
     def placed(self) -> FileMesh:
         """Nodes where they are [m], and hexahedra; tetrahedra are refused."""
         if self.has_tetrahedra:
@@ -49,7 +57,7 @@ class ConductingPart(MeshedPart):
                 f"file {Path(self.file or '').name} must have 8-node solids, for heat is conducted "
                 "through no others; found tetrahedra. Mesh it with 8-node solids."
             )
-        return super().placed()
+        return MeshedPart.placed(self)
 
     @property
     def capacity(self) -> float:

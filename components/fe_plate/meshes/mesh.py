@@ -18,7 +18,7 @@ from quintet.components.fe_plate.meshes.files import least_edge
 from quintet.components.fe_plate.meshes.params import MeshedPart
 from quintet.components.fe_plate.meshes.selections import Elements, Faces, NodeSet
 from quintet.components.fe_plate.meshes.tetrahedra import NODES as TETRAHEDRON
-from quintet.components.fe_plate.meshes.tetrahedra import PIECES, outer_triangles
+from quintet.components.fe_plate.meshes.tetrahedra import PIECES, outer_triangles, split
 from quintet.components.shared.geometry.selections import ByBox, ByBoxOrSet, in_box
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.params import unknown
@@ -77,6 +77,8 @@ def mesh(parts: Sequence[MeshedPart], dimensions: int = 3, sets: Sequence[NodeSe
                 groups[name] = np.append(groups.get(name, rows[:0]), count + rows)
         else:
             node, corner = box(part)
+            if part.tetrahedra:
+                node, corner = split(node, corner)
         nodes.append(node)
         corners.append(corner + first)
         first, count = first + len(node), count + len(corner)

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from quintet.components.fe_plate.meshes.elements import require_sound
 from quintet.components.fe_plate.meshes.files import FileMesh, least_edge, read
 from quintet.components.fe_plate.meshes.tetrahedra import NODES as TETRAHEDRON
+from quintet.components.fe_plate.meshes.tetrahedra import OF_BRICK
 from quintet.components.shared.geometry.selections import ByBox
 from quintet.components.shared.geometry.shape_keys import (
     BoxKeys,
@@ -52,6 +53,8 @@ class MeshedPart(BoxKeys, CylinderKeys, MeshKeys):
     elements : 1
         Of a box along x, y and z; of a cylinder along half the width of the square, across the
         rings, and along the axis.
+    tetrahedra
+        Whether each element of a box is cut into six tetrahedra with ten nodes.
     cutout
         What is left out of a box.
     quarter
@@ -70,6 +73,7 @@ class MeshedPart(BoxKeys, CylinderKeys, MeshKeys):
     }
     shape: Literal["box", "cylinder", "mesh"] = "box"
     elements: tuple[Count, Count, Count] | None = None
+    tetrahedra: bool = False
     cutout: Cutout | None = None
     quarter: bool = False
     coincident_nodes: Literal["refuse", "join", "keep"] = "refuse"
@@ -84,6 +88,11 @@ class MeshedPart(BoxKeys, CylinderKeys, MeshKeys):
             )
         if self.cutout is not None and not isinstance(shape, Box):
             raise ValueError(f"part: cutout is of a box; found a {self.shape}. Leave it out.")
+        if self.tetrahedra and not isinstance(shape, Box):
+            raise ValueError(
+                f"part: tetrahedra = true is of a box; found a {self.shape}. Leave it out, and "
+                "mesh other shapes with tetrahedra in a file."
+            )
         if self.parts and not isinstance(shape, Mesh):
             raise ValueError(
                 f"part: parts are of a mesh from a file; found {list(self.parts)} of a "
@@ -99,10 +108,10 @@ class MeshedPart(BoxKeys, CylinderKeys, MeshKeys):
 
     @property
     def has_tetrahedra(self) -> bool:
-        """Whether its elements are tetrahedra with ten nodes, of a file."""
+        """Whether its elements are tetrahedra with ten nodes."""
         shape = self.geometry
         if not isinstance(shape, Mesh):
-            return False
+            return self.tetrahedra
         return read(shape.file, self.coincident_nodes, self.parts).corner.shape[1] == TETRAHEDRON
 
     @property
@@ -118,7 +127,8 @@ class MeshedPart(BoxKeys, CylinderKeys, MeshKeys):
             return (1 if self.quarter else 4) * a * (a + 2 * b) * c
         if self.shape == "mesh":
             return len(self.placed().corner)
-        return a * b * c - math.prod(end - begin for begin, end in self._cut_out_ranges())
+        bricks = a * b * c - math.prod(end - begin for begin, end in self._cut_out_ranges())
+        return len(OF_BRICK) * bricks if self.tetrahedra else bricks
 
     def placed(self) -> FileMesh:
         """Nodes where they are [m], and elements, which are checked; with notes of both."""
@@ -167,7 +177,8 @@ class MeshedPart(BoxKeys, CylinderKeys, MeshKeys):
             lengths = 0.4 * shape.radius, 0.4 * shape.radius, shape.length
             return tuple(length / n for length, n in zip(lengths, self.counts, strict=True))
         sides = zip(*shape.bounds, self.counts, strict=True)
-        return tuple((b - a) / n for a, b, n in sides)
+        halves = 2.0 if self.tetrahedra else 1.0  # nodes stand in the middles of edges too
+        return tuple((b - a) / n / halves for a, b, n in sides)
 
 
 def _size(name: str, node: NDArray[np.float64], elements: int, scale: float) -> str:
@@ -233,7 +244,7 @@ class Part(MeshedPart):
         law = material(self.material)
         bound = sum((1.0 / edge**2 for edge in self.edges()), 0.0)
         speed = math.sqrt((law.bulk + 4.0 / 3.0 * law.shear) / law.density)
-        return 1.0 / (speed * math.sqrt(bound))
+        return (0.5 if self.has_tetrahedra else 1.0) / (speed * math.sqrt(bound))
 
     def require_planar(self, where: str) -> None:
         """Refuse a part that is no slab of one element, 1 m deep along y."""
@@ -249,6 +260,11 @@ class Part(MeshedPart):
             raise ValueError(
                 f"{where}: in two dimensions it must be a box, 1 m deep along y in one element; "
                 f"found {deep:g} m and {along} elements. Set both, or dimensions = 3."
+            )
+        if self.tetrahedra:
+            raise ValueError(
+                f"{where}: in two dimensions there are no tetrahedra; found tetrahedra = true. "
+                "Leave it out, or set dimensions = 3."
             )
         if self.cutout is not None:
             raise ValueError(

@@ -22,6 +22,10 @@ FACE_ENDS = np.array([(0, 1), (1, 2), (2, 0)])
 FACE_WEIGHTS = np.concatenate(
     [FACE_POINTS * (2.0 * FACE_POINTS - 1.0), 4.0 * FACE_POINTS[:, FACE_ENDS].prod(axis=2)], axis=1
 )
+# Corners of tetrahedra in those of a brick: the same diagonal of a side on both bricks there.
+OF_BRICK = np.array(
+    [(0, 1, 2, 6), (0, 5, 1, 6), (0, 2, 3, 6), (0, 3, 7, 6), (0, 4, 5, 6), (0, 7, 4, 6)]
+)
 MIDDLE = 0.25  # of an edge: a midside node must be so near to the middle of its own edge
 POOR = 0.1  # radius ratio below which an element is badly shaped (1 of a regular one)
 
@@ -80,6 +84,12 @@ def raised(points: Array, corner: Whole) -> tuple[Array, Whole, Whole]:
     middles = len(points) + number.reshape(-1, len(EDGES))
     everything = np.concatenate([points, points[ends].mean(axis=1)])
     return everything, np.concatenate([corner, middles], axis=1), ends
+
+
+def split(node: Array, corner: Whole) -> tuple[Array, Whole]:
+    """Six tetrahedra with ten nodes from each brick (e, 8) of a box, around its diagonal 06."""
+    points, nodes, _ = raised(node, corner[:, OF_BRICK].reshape(-1, 4))
+    return points, nodes
 
 
 def outer_triangles(corner: Whole) -> tuple[Whole, Whole]:

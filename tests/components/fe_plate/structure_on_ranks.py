@@ -55,6 +55,16 @@ PARAMS = {
         "mass_damping": 2e4,
         "coupled_faces": [{"lowest": [0.016, 0.0, 0.0], "highest": [0.016, 0.012, 0.02]}],
     },
+    "tetrahedra": {  # eroding against a wall, under a pressure, seen by a partner
+        "parts": [{**BLOCK, "elements": [4, 3, 5], "tetrahedra": True, "material": BRITTLE}],
+        "rigid_walls": [WALL],
+        "node_sets": [END],
+        "gauges": GAUGES,
+        "pressures": [
+            {"faces": {"lowest": [0.0, 0.0, 0.02], "highest": [0.016, 0.012, 0.02]},
+             "pressure": 2e8},
+        ],
+    },
     "bent": {  # eight points an element
         "parts": [{**BLOCK, "highest": [0.03, 0.012, 0.004], "elements": [15, 6, 2],
                    "velocity": [0.0, 0.0, 0.0]}],

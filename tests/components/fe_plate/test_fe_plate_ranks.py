@@ -16,7 +16,7 @@ from quintet.interfaces.errors import SceneError
 
 pytestmark = pytest.mark.mpi
 PROGRAM = Path(__file__).with_name("structure_on_ranks.py")
-NAMES = ("struck", "pressed", "bent", "glued", "plane")
+NAMES = ("struck", "pressed", "tetrahedra", "bent", "glued", "plane")
 STEPS = 60
 folder = from_the_start(PROGRAM, NAMES, STEPS, ranks=(1, 2, 3))
 resumed = from_states(PROGRAM, NAMES, 30, pairs=((1, 1), (1, 2), (3, 2), (2, 1)))
