@@ -11,7 +11,7 @@ from quintet.components.fe_plate.heat.params import ConductingPart
 from quintet.components.fe_plate.meshes.params import Part
 from quintet.components.fe_plate.meshes.selections import Faces, Fixed
 from quintet.components.fe_plate.params import FePlateParams, Pressure
-from quintet.components.fe_plate.state import DEVIATOR, PRESSURE, STRAIN, at_points
+from quintet.components.fe_plate.state import ACTIVE, DEVIATOR, PRESSURE, STRAIN, at_points
 from quintet.components.shared.materials.params import JohnsonCook, Material
 from quintet.interfaces.errors import SceneError
 
@@ -205,6 +205,42 @@ def test_plastic_flow_keeps_the_volume_of_elements_and_not_of_points(yields, tmp
     pressure = made.state.points[0, PRESSURE, :4]
     assert (made.state.points[0, STRAIN, :4] > 0.0).all() == yields
     assert (np.ptp(pressure) < 1e-9 * np.abs(pressure).max()) == yields
+
+
+def test_elements_erode_whole(tmp_path):
+    brittle = dataclasses.replace(PERFECT, failure_strain=0.02)
+    fixed = (Fixed(lowest=(0.0,) * 3, highest=(0.01, 0.01, 0.0)),)
+    mesh = box((2, 2, 2), (0.01,) * 3, 0.1)
+    made = structure(tmp_path, mesh, brittle, (0.0, 0.0, 60.0), fixed=fixed)
+    whole = len(made.view()["cells"])
+    for _ in range(150):
+        made.step(made.stable_dt())
+    active = made.places.active(made.state)
+    assert 0.0 < active.mean() < 1.0
+    points = at_points(made.state.points, ACTIVE, made.places.point[active == 0.0])
+    made.step(made.stable_dt())
+    points = at_points(made.state.points, ACTIVE, made.places.point[active == 0.0])
+    assert (points == 0.0).all()  # a point that fails takes the others of its element with it
+    assert len(made.view()["cells"]) != whole and made.view()["cells"].shape[1] == 3
+
+
+def test_faces_hand_on_motion_and_forces_to_partners(tmp_path):
+    """Points hang on flat triangles: linear motion is exact, forces and moments are kept."""
+    made = structure(tmp_path, box((2, 1, 1)))
+    points = np.random.default_rng(5).uniform(0.05, 0.95, (40, 3)) * (2.0, 1.0, 0.0) / (2, 1, 1)
+    answer = made.sample({"node_glue.points": points})
+    node, weight = answer["node_glue.node"].astype(int), answer["node_glue.weight"]
+    x = made.start[node]
+    np.testing.assert_allclose(np.einsum("nc,nck->nk", weight, x), points, atol=1e-12)
+    assert np.abs(answer["node_glue.gap"]).max() < 1e-12
+    force = np.random.default_rng(6).standard_normal((40, 3))
+    nodal = np.zeros_like(made.start)
+    np.add.at(nodal, node, weight[:, :, None] * force[:, None, :])
+    np.testing.assert_allclose(nodal.sum(axis=0), force.sum(axis=0), atol=1e-12)
+    moment = np.cross(made.start, nodal).sum(axis=0)
+    np.testing.assert_allclose(moment, np.cross(points, force).sum(axis=0), atol=1e-12)
+    thickness = made.describe()["contact_surface.thickness"]  # half the heights of tetrahedra
+    assert set(np.round(thickness, 12)) == {0.25, 0.5}
 
 
 def test_one_point_is_refused(tmp_path):

@@ -1,0 +1,1 @@
+"""A cantilever of tetrahedra from a file of Gmsh swings: scene, exact by Timoshenko."""

@@ -1,0 +1,195 @@
+"""Tetrahedra from files: the order of nodes of each format, four nodes raised to ten, refusals."""
+
+from importlib.resources import files
+
+import numpy as np
+import pytest
+from tetrahedra import box, regular, written
+
+from quintet.components.fe_plate.component import FePlate
+from quintet.components.fe_plate.heat.params import ConductingPart
+from quintet.components.fe_plate.meshes.files import read
+from quintet.components.fe_plate.meshes.params import Part
+from quintet.components.fe_plate.meshes.selections import Faces, Fixed
+from quintet.components.fe_plate.meshes.tetrahedra import EDGES, jacobians, point_volumes
+from quintet.components.fe_plate.params import FePlateParams
+from quintet.components.shared.materials.params import Material
+from quintet.interfaces.errors import SceneError
+
+CANTILEVER = files("quintet.scenarios") / "cantilever"
+ELASTIC = Material(density=2700.0, youngs_modulus=7e10, poissons_ratio=0.3)
+# A tetrahedron whose midside nodes are each elsewhere: no two orders give the same element.
+CORNERS = np.array([(0.0, 0.0, 0.0), (2.0, 0.0, 0.0), (0.5, 1.5, 0.0), (0.5, 0.5, 1.0)])
+BENT = 0.01 * np.array([(0, 1, -2), (3, 1, 0), (-2, 0, 1), (0, -3, 1), (2, 2, 1), (1, 3, 2)])
+PLACES = np.concatenate([CORNERS, CORNERS[EDGES].mean(axis=1) + BENT])
+GMSH = [0, 1, 2, 3, 4, 5, 6, 7, 9, 8]  # Gmsh's last two stand in the middles of 23 and 13
+
+
+def listed(places):
+    rows = enumerate(places.tolist(), 1)
+    return "".join(f"{k}, {x!r}, {y!r}, {z!r}\n" for k, (x, y, z) in rows)
+
+
+def gmsh(places):
+    nodes = "".join(f"{k} {x!r} {y!r} {z!r}\n" for k, (x, y, z) in enumerate(places.tolist(), 1))
+    numbers = " ".join(str(1 + k) for k in GMSH)
+    return (
+        f"$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n{len(places)}\n{nodes}$EndNodes\n"
+        f"$Elements\n1\n1 11 2 1 1 {numbers}\n$EndElements\n"
+    )
+
+
+def abaqus(places, kind="C3D10", numbers=range(1, 11)):
+    nodes = listed(places)
+    corners = ", ".join(str(k) for k in numbers)
+    return f"*NODE\n{nodes}*ELEMENT, TYPE={kind}\n1, {corners}\n"
+
+
+def nastran(places):
+    nodes = "".join(
+        f"GRID    {k:8d}{'':8}{x:8.4f}{y:8.4f}{z:8.4f}\n"
+        for k, (x, y, z) in enumerate(places.tolist(), 1)
+    )
+    first, last = ("".join(f"{k:8d}" for k in numbers) for numbers in (range(1, 7), range(7, 11)))
+    return f"BEGIN BULK\n{nodes}CTETRA  {1:8d}{1:8d}{first}+\n+       {last}\nENDDATA\n"
+
+
+def ls_dyna(places):
+    nodes = listed(places)
+    numbers = "".join(f"{k:8d}" for k in range(1, 11))
+    return f"*KEYWORD\n*NODE\n{nodes}*ELEMENT_SOLID\n{1:8d}{1:8d}\n{numbers}\n*END\n"
+
+
+def volume(places):
+    """∫ det J of an element by Gauss's rule in a cube that is collapsed to it."""
+    at, weights = np.polynomial.legendre.leggauss(4)
+    u, v, w = (0.5 * (1.0 + x.ravel()) for x in np.meshgrid(at, at, at))
+    first = np.array([(1 - u), u * (1 - v), u * v * (1 - w), u * v * w]).T
+    weight = np.einsum("i,j,k->ijk", weights, weights, weights).ravel() / 8.0 * u * u * v
+    return float(jacobians(places, np.arange(10)[None], first)[0] @ weight)
+
+
+FORMATS = {"a.msh": gmsh, "a.inp": abaqus, "a.bdf": nastran, "a.k": ls_dyna}
+
+
+def saved(folder, name, text):
+    (folder / name).write_text(text)
+    return str(folder / name)
+
+
+@pytest.mark.parametrize("name", FORMATS)
+def test_each_format_numbers_the_nodes_in_its_own_order(name, tmp_path):
+    loaded = read(saved(tmp_path, name, FORMATS[name](PLACES)))
+    np.testing.assert_allclose(loaded.node[loaded.corner[0]], PLACES, atol=5e-5)
+    found = point_volumes(loaded.node, loaded.corner).sum()
+    assert found == pytest.approx(volume(PLACES), rel=1e-3) and abs(found - 0.5) > 0.02
+
+
+def test_a_straight_element_has_its_volume(tmp_path):
+    straight = np.concatenate([CORNERS, CORNERS[EDGES].mean(axis=1)])
+    for name, text in FORMATS.items():
+        loaded = read(saved(tmp_path, name, text(straight)))
+        assert point_volumes(loaded.node, loaded.corner).sum() == pytest.approx(0.5, rel=1e-12)
+
+
+def test_nodes_out_of_order_are_refused(tmp_path):
+    file = saved(tmp_path, "a.inp", abaqus(PLACES, numbers=[1 + k for k in GMSH]))
+    with pytest.raises(SceneError, match=r"each midside node must .* node 8 of element 0 .*order"):
+        Part(shape="mesh", file=file, material=ELASTIC).placed()
+
+
+def test_elements_inside_out_collapsed_or_too_curved_are_refused(tmp_path):
+    turned = PLACES * np.array([1.0, 1.0, -1.0])
+    with pytest.raises(SceneError, match=r"Jacobian above 0 at its corners; found -3.*Turn their"):
+        Part(shape="mesh", file=saved(tmp_path, "a.inp", abaqus(turned)), material=ELASTIC).placed()
+    file = saved(tmp_path, "b.inp", abaqus(PLACES, numbers=[*range(1, 10), 9]))
+    with pytest.raises(SceneError, match=r"must have 10 different nodes; 1 of 1 have not"):
+        Part(shape="mesh", file=file, material=ELASTIC).placed()
+    curved = PLACES.copy()
+    curved[4:7, 2] += (0.45, 0.4, 0.38)  # the face 012 bulges to the corner 3
+    file = saved(tmp_path, "c.inp", abaqus(curved))
+    with pytest.raises(SceneError, match="so curved it is; found -"):
+        Part(shape="mesh", file=file, material=ELASTIC).placed()
+
+
+def test_a_flat_element_is_noted(tmp_path):
+    flat = np.concatenate([CORNERS, CORNERS[EDGES].mean(axis=1)]) * np.array([1.0, 1.0, 0.02])
+    file = saved(tmp_path, "a.inp", abaqus(flat))
+    notes = Part(shape="mesh", file=file, material=ELASTIC).placed().notes
+    assert any("1 of 1 elements are badly shaped" in note for note in notes)
+
+
+def test_four_nodes_are_raised_to_ten_with_a_note(tmp_path):
+    node, corner = box((2, 1, 1))
+    used = np.unique(corner[:, :4])
+    clamp = used[node[used, 0] < 1e-9]
+    file = written(
+        tmp_path / "a.inp", node[: used.max() + 1], corner[:, :4], "tetra",
+        point_sets={"clamp": clamp},
+    )  # fmt: skip
+    loaded = read(file)
+    assert len(loaded.node) == len(node) and loaded.corner.shape == corner.shape
+    np.testing.assert_allclose(
+        loaded.node[loaded.corner[:, 4:]], loaded.node[loaded.corner[:, EDGES]].mean(axis=2)
+    )
+    new = len(node) - used.max() - 1
+    assert any(f"12 tetrahedra of four nodes got {new} more" in note for note in loaded.notes)
+    assert len(loaded.sets["clamp"]) == (node[:, 0] < 1e-9).sum() == 9
+    made = FePlate(FePlateParams(parts=(Part(shape="mesh", file=file, material=ELASTIC),)))
+    assert made.built.volume.sum() == pytest.approx(1.0, rel=1e-12)
+
+
+TET4 = "      1       1       1       2       3       4       4       4       4       4\n"
+OLD = "      1       1       1       2       3       3       4       4       4       4\n"
+
+
+@pytest.mark.parametrize("line", [TET4, OLD])
+@pytest.mark.parametrize("keyword", ["*ELEMENT_SOLID", "*ELEMENT_SOLID_TET4TOTET10"])
+def test_four_nodes_of_ls_dyna_are_raised_and_have_velocities(line, keyword, tmp_path):
+    nodes = listed(CORNERS)
+    text = f"*KEYWORD\n*NODE\n{nodes}{keyword}\n {line}*INITIAL_VELOCITY_NODE\n1,0.,0.,4.\n*END\n"
+    loaded = read(saved(tmp_path, "a.k", text))
+    assert loaded.corner.shape == (1, 10)
+    np.testing.assert_allclose(loaded.velocity[loaded.corner[0], 2], [4, 0, 0, 0, 2, 0, 2, 2, 0, 0])
+    assert point_volumes(loaded.node, loaded.corner).sum() == pytest.approx(0.5, rel=1e-12)
+
+
+def test_sets_of_faces_name_their_nodes():
+    """As the physical surfaces of Gmsh do."""
+    loaded = read(str(CANTILEVER / "coarse.msh"))
+    assert set(loaded.sets) == {"clamp", "end"} and set(loaded.groups) == {"beam"}
+    for name, place in (("clamp", 0.0), ("end", 0.1)):
+        at = np.flatnonzero(np.isclose(loaded.node[:, 0], place))
+        assert np.array_equal(loaded.sets[name], at) and len(at) == 13
+    assert any("its set clamp of faces or edges names the 13 nodes" in n for n in loaded.notes)
+
+
+def test_selections_take_whole_faces_of_six_nodes(tmp_path):
+    """Four triangles each: 8 of the end; half of a face is none."""
+    file = written(tmp_path / "a.vtk", *box((2, 1, 1)))
+    part = Part(shape="mesh", file=file, material=ELASTIC)
+
+    def faces(low, high):
+        chosen = Faces(lowest=low, highest=high)
+        return len(FePlate(FePlateParams(parts=(part,), coupled_faces=(chosen,))).faces)
+
+    assert faces((0.0, 0.0, 0.0), (0.0, 1.0, 1.0)) == 8
+    everything = faces((0.0, 0.0, 0.0), (1.0, 1.0, 1.0))
+    assert everything == 4 * 2 * 10
+    assert faces((0.0, 0.0, 0.0), (0.0, 1.0, 1.0)) == faces((0.0, 0.0, 0.0), (0.24, 1.0, 1.0))
+
+
+def test_heat_through_tetrahedra_is_refused(tmp_path):
+    file = written(tmp_path / "a.vtk", *regular())
+    part = ConductingPart(shape="mesh", file=file, conductivity=1.0)
+    with pytest.raises(SceneError, match=r"a.vtk must have 8-node solids.*found tetrahedra"):
+        part.placed()
+
+
+def test_a_clamp_by_a_box_holds_midside_nodes_too(tmp_path):
+    file = written(tmp_path / "a.vtk", *box((2, 1, 1)))
+    part = Part(shape="mesh", file=file, material=ELASTIC)
+    fixed = (Fixed(lowest=(0.0, 0.0, 0.0), highest=(0.0, 1.0, 1.0)),)
+    made = FePlate(FePlateParams(parts=(part,), fixed=fixed))
+    assert (made.model.free == 0).all(axis=1).sum() == 9
+    assert len(made.walls()["points"]) == 4
