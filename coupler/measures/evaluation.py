@@ -5,14 +5,20 @@ The same measure is taken of the run's curve and of the reference.
 
 import math
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from quintet.coupler.measures import time_series
-from quintet.coupler.measures.expectation import DISTANCES, MEASURED_IN, ROUNDING, Expectation
+from quintet.coupler.measures import time_series, wave_trains
+from quintet.coupler.measures.expectation import (
+    DISTANCES,
+    MEASURED_IN,
+    OF_WAVES,
+    ROUNDING,
+    Expectation,
+)
 from quintet.coupler.measures.oscillation import fit
 from quintet.coupler.measures.time_series import Curve
 from quintet.interfaces.component import Field, Fields, Port, fields_of, lacked
@@ -101,16 +107,15 @@ def lacking_items(
     """
     for expectation in expectations:
         array = outputs.get(expectation.component, {}).get(expectation.field)
-        if (
-            array is not None
-            and isinstance(expectation.item, int)
-            and expectation.item >= len(array)
-        ):
-            yield (
-                f"expectation {expectation.name}: item must be below {len(array)}, as many as "
-                f"{expectation.component} has of {expectation.field}; found {expectation.item}. "
-                "Correct it."
-            )
+        if array is None:
+            continue
+        for item in (expectation.item, *(expectation.waves.items if expectation.waves else ())):
+            if isinstance(item, int) and item >= len(array):
+                yield (
+                    f"expectation {expectation.name}: item must be below {len(array)}, as many as "
+                    f"{expectation.component} has of {expectation.field}; found {item}. Correct it."
+                )
+                break
 
 
 def _check_unit(expectation: Expectation, field: Field) -> list[str]:
@@ -131,7 +136,9 @@ def _check_unit(expectation: Expectation, field: Field) -> list[str]:
 
 
 def curve(expectation: Expectation, recording: "Recording") -> Curve:
-    """Return the computed curve as it is measured: averaged, and from its level on."""
+    """Return the computed curve as it is measured: averaged, and from its level on; one item's."""
+    if expectation.waves is not None:
+        expectation = replace(expectation, measure="mean", waves=None)
     return _prepared(expectation, whole_curve(expectation, recording))
 
 
@@ -142,7 +149,15 @@ def _prepared(expectation: Expectation, whole: Curve) -> Curve:
 
 
 def whole_curve(expectation: Expectation, recording: "Recording") -> Curve:
-    """Return the recorded curve, offset and scaled; an impulse as its mean rate at mid-window."""
+    """Return the recorded curve, offset and scaled; an impulse as its mean rate at mid-window.
+
+    For measures of waves it has a column for each item of theirs.
+    """
+    if expectation.waves is not None:
+        single = replace(expectation, measure="mean", waves=None)
+        items = [replace(single, item=item) for item in expectation.waves.items]
+        curves = [whole_curve(each, recording) for each in items]
+        return Curve(curves[0].times, np.stack([curve.values for curve in curves], axis=1))
     ports = recording.ports(expectation.component)
     fields = fields_of(ports)
     if mistakes := _check_field(expectation, fields, ports):
@@ -189,6 +204,11 @@ def _measured(expectation: Expectation, curve: Curve, end: float) -> float:
     if expectation.measure == "at":
         return float(np.interp(expectation.begin, curve.times, curve.values))
     part = time_series.between(curve, expectation.begin, end)
+    if expectation.waves is not None:
+        train = wave_trains.fit(part, expectation.waves)
+        return dict(zip(OF_WAVES, (train.height, train.length, train.reflection), strict=True))[
+            expectation.measure
+        ]
     match expectation.measure:
         case "crossing":
             assert expectation.level is not None

@@ -9,14 +9,20 @@ from typing import Annotated, Literal
 import pydantic
 
 from quintet.coupler.measures.provenance import ReadFrom, ReferenceKind, provenance_rules
+from quintet.coupler.measures.wave_trains import WaveLine
 from quintet.interfaces.params import NotNegative, Number, Positive, parameters
 
 Measure = Literal[
-    "rms", "relative_rms", "crossing", "at", "max", "min", "mean", "integral", "period", "decay"
+    "rms", "relative_rms", "crossing", "at", "max", "min", "mean", "integral", "period", "decay",
+    "wave_height", "wave_length", "reflection",
 ]  # fmt: skip
 DISTANCES = ("rms", "relative_rms")  # to a curve
+OF_WAVES = ("wave_height", "wave_length", "reflection")  # that run along a line
 Index = Annotated[int, pydantic.Field(ge=0)]
-MEASURED_IN = {"crossing": "s", "period": "s", "decay": "1/s", "relative_rms": "1"}
+MEASURED_IN = {"crossing": "s", "period": "s", "decay": "1/s", "relative_rms": "1"} | {
+    "wave_length": "m",
+    "reflection": "1",
+}
 ROUNDING = 1e-9  # of a time: what a run's last window may lack
 
 
@@ -27,8 +33,9 @@ class Expectation:
     ``rms`` is the distance to the curve of a file, over that curve's own times, and
     ``relative_rms`` the same over the curve's own size; ``crossing`` the first time at which a
     level is passed; ``at`` the value at ``begin``; ``period`` [s] and ``decay`` [1/s] those of the
-    damped oscillation that fits best; ``integral`` is over time; these and the others are taken
-    between ``begin`` and ``end``. Impulse fields are measured as mean rates.
+    damped oscillation that fits best; ``integral`` is over time; ``wave_height``, ``wave_length``
+    [m] and ``reflection`` are those of waves along a line of items, ``waves``; these and the others
+    are taken between ``begin`` and ``end``. Impulse fields are measured as mean rates.
 
     Parameters
     ----------
@@ -50,7 +57,9 @@ class Expectation:
         Distance to the reference curve (rms), also over that curve's own size (relative_rms); time
         at which `level` is passed first (crossing); value at the time `begin` (at); largest,
         smallest and mean value; integral over time; period and decay of the damped oscillation
-        that fits best.
+        that fits best; height, length and coefficient of reflection of waves.
+    waves
+        Items along the way of waves; pictures show the curve of `item`.
     value : `unit`
         The reference as a number; this or `csv`.
     csv
@@ -108,6 +117,7 @@ class Expectation:
     offset: Number = 0.0
     scale: Number = 1.0
     measure: Measure
+    waves: WaveLine | None = None
     value: Number | None = None
     csv: str | None = None
     csv_second: Positive = 1.0
@@ -161,6 +171,16 @@ class Expectation:
             (
                 self.from_level is not None and self.measure in ("crossing", "at"),
                 "times of a crossing, and of a value, count from the start; remove from_level.",
+            ),
+            (
+                (self.measure in OF_WAVES) != (self.waves is not None),
+                "waves belongs to wave_height, wave_length and reflection, which need it; "
+                f"measure is {self.measure}.",
+            ),
+            (
+                self.waves is not None
+                and bool(self.csv or self.from_level is not None or self.moving_mean),
+                "waves are compared with a number; remove csv, from_level and moving_mean.",
             ),
             (self.field.count(".") != 1, f"field must be port.field; found {self.field!r}."),
             (self.scale == 0.0, "scale must not be 0, as every run would do; remove it."),

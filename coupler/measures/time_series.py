@@ -14,7 +14,7 @@ class Curve(NamedTuple):
     """A time series."""
 
     times: Array  # (m,) s
-    values: Array  # (m,)
+    values: Array  # (m,); (m, k) of k items, for measures of waves
 
 
 def read(path: Path, where: str, second: float = 1.0) -> Curve:
@@ -71,11 +71,16 @@ def _numbers(texts: list[str]) -> tuple[float, float] | None:
 
 
 def between(curve: Curve, begin: float, end: float) -> Curve:
-    """Cut a curve to a time interval, its ends interpolated, as far as the curve reaches."""
+    """Cut a curve to a time interval, its ends interpolated, as far as the curve reaches.
+
+    Values are (m,), or (m, k) of k curves.
+    """
     times, values = curve
     begin, end = max(begin, times[0]), min(end, times[-1])
     inside = (times > begin) & (times < end)
     cut = np.concatenate([[begin], times[inside], [end]]) if end > begin else np.array([end])
+    if values.ndim > 1:
+        return Curve(cut, np.stack([np.interp(cut, times, row) for row in values.T], axis=1))
     return Curve(cut, np.interp(cut, times, values))
 
 

@@ -125,6 +125,8 @@ def _of_value(
     expectation: Expectation, every: int, samples: Samples, scene: Scene, recording: Recording
 ) -> float | None:
     """Bar of the value of an expectation: what it changes by as its curve is corrected."""
+    if expectation.waves is not None:  # of several curves; their errors are not estimated
+        return None
     whole = whole_curve(expectation, recording)
     times = recording.times(expectation.component)
     end, first = float(times[-1]), len(times) - len(whole.times)

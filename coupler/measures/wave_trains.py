@@ -1,0 +1,112 @@
+"""Height, length and reflection of waves along a line, from levels at several places.
+
+At each place the harmonic of a known period is fitted in least squares, with two overtones and a
+mean. Its complex amplitudes are those of two wave trains that run against each other,
+
+    B(x) = A e^{-ikx} + R e^{ikx},
+
+in least squares over the places (Mansard & Funke, Proc. 17th Int. Conf. Coast. Eng. (1980) 154;
+with two places Goda & Suzuki, Proc. 15th (1976) 828). Where k is not known it is the one that fits
+best; this needs three places.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import NonNegativeInt
+
+from quintet.coupler.measures.time_series import Curve
+from quintet.interfaces.component import Array
+from quintet.interfaces.params import Number, Positive, parameters
+
+HARMONICS = 3  # that are fitted in time
+FEWEST = 2  # places; 3 where the length is sought
+CYCLES = 0.99  # that a curve must hold
+TRIALS = 400  # lengths that are looked at, before the best one is refined
+SHARPENED = 60  # steps of the golden section
+Complex = NDArray[np.complex128]
+
+
+@parameters
+class WaveLine:
+    """Levels along a line in which waves run, for the measures of waves.
+
+    Parameters
+    ----------
+    items : 1
+        Numbers of the items, from 0.
+    places : m
+        Of each along the line, in the direction of the waves.
+    period : s
+        Of the waves.
+    length : m
+        Of the waves; if not given, the one that fits best.
+    """
+
+    items: tuple[NonNegativeInt, ...]
+    places: tuple[Number, ...]
+    period: Positive
+    length: Positive | None = None
+
+    def __post_init__(self) -> None:
+        fewest = FEWEST if self.length else FEWEST + 1
+        if len(self.items) < fewest or len(self.items) != len(self.places):
+            raise ValueError(
+                f"waves must have {fewest} items or more, and a place for each; found "
+                f"{len(self.items)} items and {len(self.places)} places. Correct them."
+            )
+        if any(b <= a for a, b in zip(self.places, self.places[1:], strict=False)):
+            raise ValueError(
+                f"waves.places must increase; found {self.places} m. Put them in order."
+            )
+
+
+class Train(NamedTuple):
+    """Two wave trains that run against each other; nan where no fit was found."""
+
+    height: float  # of the train along the line, in the unit of the curves
+    reflection: float  # amplitude of the other one over that of the first
+    length: float  # m
+
+
+def fit(curves: Curve, line: WaveLine) -> Train:
+    """Fit two wave trains to curves, values (m, k), at the places of a line."""
+    times = curves.times - curves.times[0]
+    if len(times) < 4 * HARMONICS or times[-1] < CYCLES * line.period:
+        return Train(math.nan, math.nan, math.nan)
+    omega = 2.0 * math.pi / line.period
+    columns = [np.ones_like(times)]
+    for n in range(1, HARMONICS + 1):
+        columns += [np.cos(n * omega * times), np.sin(n * omega * times)]
+    factors = np.linalg.lstsq(np.stack(columns, axis=1), curves.values, rcond=None)[0]
+    amplitudes = factors[1] - 1j * factors[2]  # (k,) B
+    places = np.array(line.places)
+    length = line.length or _best_length(places, amplitudes)
+    forth, back = _trains(places, amplitudes, length)[0].tolist()
+    return Train(2.0 * abs(forth), abs(back) / abs(forth) if forth else math.nan, length)
+
+
+def _trains(places: Array, amplitudes: Complex, length: float) -> tuple[Complex, float]:
+    """A and R (2,) of a wave length [m], and the square of the misfit."""
+    phase = 2j * math.pi / length * (places - places.mean())
+    both = np.stack([np.exp(-phase), np.exp(phase)], axis=1)
+    trains: Complex = np.linalg.lstsq(both, amplitudes, rcond=None)[0]
+    misfit = amplitudes - both @ trains
+    return trains, float((misfit * misfit.conj()).real.sum())
+
+
+def _best_length(places: Array, amplitudes: Complex) -> float:
+    """Length [m] that fits best, from twice the least to four times the whole distance."""
+    shortest, longest = 2.0 * float(np.diff(places).min()), 4.0 * float(np.ptp(places))
+    numbers = np.linspace(1.0 / longest, 1.0 / shortest, TRIALS)
+    misfits = [_trains(places, amplitudes, 1.0 / number)[1] for number in numbers]
+    k = int(np.argmin(misfits))
+    low, high = float(numbers[max(k - 1, 0)]), float(numbers[min(k + 1, TRIALS - 1)])
+    golden = 0.5 * (math.sqrt(5.0) - 1.0)
+    for _ in range(SHARPENED):
+        inner = high - golden * (high - low), low + golden * (high - low)
+        first, second = (_trains(places, amplitudes, 1.0 / number)[1] for number in inner)
+        low, high = (low, inner[1]) if first < second else (inner[0], high)
+    return 2.0 / (low + high)

@@ -1,0 +1,108 @@
+"""Waves that run against each other give back their height, length and reflection."""
+
+import math
+
+import numpy as np
+import pytest
+from pydantic import ValidationError
+
+from quintet.coupler.files.recording import Instant, Recorder, Recording
+from quintet.coupler.measures.evaluation import curve, evaluate, lacking_items
+from quintet.coupler.measures.expectation import Expectation
+from quintet.coupler.measures.time_series import Curve
+from quintet.coupler.measures.wave_trains import WaveLine, fit
+from quintet.interfaces.component import Field, Port
+
+PERIOD, LENGTH, HEIGHT, REFLECTION = 1.3, 1.7, 0.1, 0.12
+PLACES = (1.0, 1.3, 1.75, 2.4)
+LEVELS = Port("level_gauge", (Field("height", (), "m"),))
+
+
+def levels(times, places=PLACES):
+    """Levels (m, k) m of two trains on water 0.4 m deep, with a bound second harmonic."""
+    t, x = times[:, np.newaxis], np.array(places)
+    omega, k = 2.0 * math.pi / PERIOD, 2.0 * math.pi / LENGTH
+    forth, back = omega * t - k * x, omega * t + k * x + 0.7
+    waves = np.cos(forth) + REFLECTION * np.cos(back) + 0.2 * np.cos(2.0 * forth)
+    return 0.4 + 0.5 * HEIGHT * waves
+
+
+@pytest.mark.parametrize("begin", [0.0, 3.21])
+@pytest.mark.parametrize("items", [2, 3, 4])
+@pytest.mark.parametrize("length", [None, LENGTH])
+def test_two_trains_are_told_apart(begin, items, length):
+    if items == 2 and length is None:
+        return
+    times = np.linspace(begin, begin + 4 * PERIOD, 300)
+    line = WaveLine(items=tuple(range(items)), places=PLACES[:items], period=PERIOD, length=length)
+    train = fit(Curve(times, levels(times, PLACES[:items])), line)
+    assert train == pytest.approx((HEIGHT, REFLECTION, LENGTH), rel=1e-5)
+
+
+def test_less_than_a_period_has_no_value():
+    times = np.linspace(0.0, 0.9 * PERIOD, 100)
+    line = WaveLine(items=(0, 1, 2, 3), places=PLACES, period=PERIOD)
+    assert all(map(math.isnan, fit(Curve(times, levels(times)), line)))
+
+
+def expectation(**settings):
+    base = {
+        "name": "waves", "component": "water", "field": "level_gauge.height", "source": "by hand",
+        "within": 1e-3,
+        "waves": WaveLine(items=(0, 1, 2, 3), places=PLACES, period=PERIOD),
+    }  # fmt: skip
+    return Expectation(**(base | settings))
+
+
+@pytest.mark.parametrize(
+    ("measure", "value", "unit"),
+    [
+        ("wave_height", HEIGHT, "m"),
+        ("reflection", REFLECTION, "1"),
+        ("wave_length", LENGTH, "m"),
+    ],
+)
+def test_a_recording_of_gauges_gives_each_measure(tmp_path, measure, value, unit):
+    times = np.linspace(0.0, 3.0 * PERIOD, 200)
+    with Recorder(tmp_path / "recording.h5", "", "") as recorder:
+        recorder.component("water", (LEVELS,), {})
+        for k, (t, row) in enumerate(zip(times, levels(times), strict=True)):
+            recorder.add("water", Instant(t, k), {"level_gauge.height": row})
+    wanted = expectation(measure=measure, value=value, unit=unit)
+    with Recording(tmp_path / "recording.h5") as recording:
+        outcome = evaluate(wanted, recording, tmp_path)
+        drawn = curve(wanted, recording)
+    assert outcome.met and outcome.value == pytest.approx(value, rel=1e-4)
+    assert drawn.values == pytest.approx(levels(times)[:, 0])
+
+
+@pytest.mark.parametrize(
+    ("settings", "match"),
+    [
+        ({"measure": "mean"}, "waves belongs to wave_height, wave_length and reflection"),
+        ({"measure": "reflection", "waves": None}, "which need it; measure is reflection"),
+        ({"measure": "reflection", "moving_mean": 0.1}, "remove csv, from_level and moving_mean"),
+    ],
+)
+def test_settings_that_do_not_suit_waves_are_refused(settings, match):
+    with pytest.raises(ValueError, match=match):
+        expectation(value=0.1, unit="1", **settings)
+
+
+@pytest.mark.parametrize(
+    ("settings", "match"),
+    [
+        ({"items": (0, 1), "places": (1.0, 1.3)}, "must have 3 items or more, and a place"),
+        ({"items": (0, 1, 2), "places": (1.0, 1.3)}, "found 3 items and 2 places"),
+        ({"items": (0, 1, 2), "places": (1.0, 1.5, 1.3)}, "waves.places must increase"),
+    ],
+)
+def test_a_line_needs_places_in_order(settings, match):
+    with pytest.raises(ValidationError, match=match):
+        WaveLine(period=PERIOD, **settings)
+
+
+def test_items_that_a_component_lacks_are_named():
+    wanted = [expectation(measure="reflection", value=0.0, unit="1")]
+    sentences = list(lacking_items(wanted, {"water": {"level_gauge.height": np.zeros(3)}}))
+    assert len(sentences) == 1 and "item must be below 3" in sentences[0]
