@@ -60,7 +60,8 @@ class SphFluid(Component):
         self.frame = features.frame(params, self.all_ranks)
         self.boundary = features.boundary_method(params, self.samples, self.frame)
         self.boundary.start(self.state)
-        self.pistons = features.pistons(params, self.samples, self.all_ranks)
+        self.pistons = features.pistons(params, self.samples, self.all_ranks, self.symmetry)
+        self.damping = features.damping(params, self.all_ranks)
         self.lists = FluidLists(params, self.samples, self.all_ranks)
         self.pressure_parts = features.pressure_parts(params, self.boundary)
         precision = features.precision(params, self.all_ranks)
@@ -166,6 +167,7 @@ class SphFluid(Component):
         state.moved = math.sqrt(shift2)
         state.largest_acceleration, state.largest_approach = fastest, approach
         state.last_dt, state.steps = dt, state.steps + 1
+        self.damping.apply(state, dt)
         self.frame.advance(dt)
         self.pistons.advance(state, dt)
         self.all_ranks.end_step()
@@ -208,6 +210,7 @@ class SphFluid(Component):
         """Copy out all state; the neighbour list is kept as the places it was made from."""
         whole = self.all_ranks.whole(self.state).save()
         others = self.frame.save() | self.pistons.save() | self.open_boundaries.save()
+        others |= self.damping.save()
         return whole | {"placed": np.array(self.samples.placed)} | others
 
     def load(self, state: Fields) -> None:
@@ -223,12 +226,13 @@ class SphFluid(Component):
         self.films.load(self.state)
         self.frame.load(state)
         self.pistons.load(state)
+        self.damping.load(state)
         if len(self.state.reference):
             self._list()
 
     def begin_from(self, state: Fields) -> None:
         """Begin from the state of another run; motions, books and warnings begin with this one."""
-        clocks = {*self.frame.save(), *self.pistons.save()}
+        clocks = {*self.frame.save(), *self.pistons.save(), *self.damping.save()}
         super().begin_from({key: rows for key, rows in state.items() if key not in clocks})
         begin_books(self.state, self.all_ranks.fluid(self.state))
         self.pistons.refuse_jump(state)
@@ -239,7 +243,7 @@ class SphFluid(Component):
         if len(self.state.reference):
             self.symmetry.write_images(self.state)
             totals.internal += self.boundary.energy(self.state, self.lists.arrays, self.team)
-        totals.work += self.frame.work + self.pistons.work
+        totals.work += self.frame.work + self.pistons.work + self.damping.work
         return totals
 
     def view(self) -> Fields:

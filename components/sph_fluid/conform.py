@@ -45,11 +45,35 @@ CHANNEL: dict[str, Any] = {
         "discharge_gauges": [0.75],
     },
 }
+FLUME: dict[str, Any] = {
+    "spacing": 0.02,
+    "sound_speed": 14.1,
+    "dimensions": 2,
+    "fluid": [{"shape": "box", "lowest": [0.0, 0.0, 0.0], "highest": [0.4, 1.0, 0.2]}],
+    "boundary": {
+        "walls": {"lowest": [-0.2, 0.0, 0.0], "highest": [0.4, 1.0, 0.4]},
+        "obstacles": [{"lowest": [-0.1, 0.0, 0.0], "highest": [0.0, 1.0, 0.4]}],
+        "pistons": [
+            {
+                "part": "obstacles.0",
+                "waves": {
+                    "paddle": "piston",
+                    "depth": 0.2,
+                    "height": 0.08,
+                    "period": 1.0,
+                    "ramp": 0.01,
+                    "absorption": True,
+                },
+            }
+        ],
+        "damping": [{"lowest": [0.2, 0.0, 0.0], "highest": [0.4, 1.0, 0.4], "towards": "x+"}],
+    },
+}
 PLACES = np.array([[0.1, 0.1, -0.05], [0.15, 0.1, -0.05]])  # (2, 3) m, of the samples
 
 
 def cases() -> tuple[ConformCase, ...]:
-    """Walls of either kind, both integrators, gauges, two dimensions, a tank that moves."""
+    """Walls of either kind, both integrators, gauges, two dimensions, a tank that moves, waves."""
     twice = {**DROP, "integration": "symplectic"}
     box = {"shape": "box", "lowest": [0.0, 0.0, 0.0], "highest": [0.2, 1.0, 0.2]}
     slab = {**DROP, "dimensions": 2, "fluid": [box]}
@@ -64,6 +88,7 @@ def cases() -> tuple[ConformCase, ...]:
         ConformCase("drop in a tank that rolls", {**DROP, "boundary": ROLLING}, dt=1e-4),
         _case("drop in a tank that repeats", turning | {"gauges": {"mass_gauge": True}}),
         ConformCase("channel with inflow and outflow", CHANNEL, dt=1e-4, still=False),
+        ConformCase("flume with a wave maker", FLUME, dt=1e-4, still=False),
     )
 
 

@@ -21,6 +21,7 @@ from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.ranks.method import Ranks
 from quintet.components.sph_fluid.ranks.one import OneRank
 from quintet.components.sph_fluid.state import Array, State
+from quintet.components.sph_fluid.waves.no_damping import Damping, NoDamping
 from quintet.interfaces.component import Resources
 
 if TYPE_CHECKING:
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
     from quintet.components.sph_fluid.boundary.lubrication import LubricationFilms
     from quintet.components.sph_fluid.gauges.gauges import Gauges
     from quintet.components.sph_fluid.pairs.shepard_filter import ShepardFilter
+    from quintet.components.sph_fluid.waves.absorption import Absorber
 
 
 class PressurePart(Protocol):
@@ -67,7 +69,9 @@ def boundary_method(params: SphFluidParams, samples: Samples, frame: Frame) -> B
     return DynamicBoundary(samples)
 
 
-def pistons(params: SphFluidParams, samples: Samples, ranks: Ranks) -> Pistons:
+def pistons(
+    params: SphFluidParams, samples: Samples, ranks: Ranks, symmetry: SymmetryPlanes
+) -> Pistons:
     """Parts of the boundary that move by themselves."""
     if not params.boundary.pistons:
         return NoPistons()
@@ -75,7 +79,31 @@ def pistons(params: SphFluidParams, samples: Samples, ranks: Ranks) -> Pistons:
     from quintet.components.sph_fluid.boundary.pistons import MovingPistons
     from quintet.components.sph_fluid.build import wall_density
 
-    return MovingPistons(params, samples, ranks, partial(wall_density, params=params))
+    density_at = partial(wall_density, params=params)
+    return MovingPistons(params, samples, ranks, density_at, absorbers(params, symmetry, ranks))
+
+
+def absorbers(
+    params: SphFluidParams, symmetry: SymmetryPlanes, ranks: Ranks
+) -> "dict[int, Absorber]":
+    """What corrects the motion of pistons that take in waves, by their number."""
+    numbers = [n for n, piston in enumerate(params.boundary.pistons) if piston.absorbs]
+    if not numbers:
+        return {}
+    # Left out of scenes whose pistons send waves back.
+    from quintet.components.sph_fluid.waves.absorption import Absorber
+
+    return {number: Absorber(params, symmetry, ranks, number) for number in numbers}
+
+
+def damping(params: SphFluidParams, ranks: Ranks) -> Damping:
+    """Zones in which the fluid's motion is damped."""
+    if not params.boundary.damping:
+        return NoDamping()
+    # Left out of scenes without damping zones.
+    from quintet.components.sph_fluid.waves.damping import DampingZones
+
+    return DampingZones(params, ranks)
 
 
 def contact_stiffness(params: SphFluidParams) -> "ContactStiffness":

@@ -165,6 +165,11 @@ class SphFluidParams:
             check_motion(boundary, boundary.motion, dimensions)
         if boundary.pistons:
             self._check_pistons()
+        if boundary.damping:
+            # Left out of scenes without damping zones.
+            from quintet.components.sph_fluid.setup.wave_checks import check_damping
+
+            check_damping(boundary, self.extents, dimensions, spacing)
         self._check_methods()
         self.gauges.check(boundary, spacing, dimensions, 2.0 * self.smoothing_length)
         if self.shapes:
@@ -213,6 +218,11 @@ class SphFluidParams:
         from quintet.components.sph_fluid.setup.piston_checks import check_pistons
 
         check_pistons(self.boundary, self.dimensions, self.spacing)
+        if any(piston.waves for piston in self.boundary.pistons):
+            # Left out of scenes without wave makers.
+            from quintet.components.sph_fluid.setup.wave_checks import check_waves
+
+            check_waves(self.boundary, self.extents, self.gravity, self.spacing)
 
     def _check_methods(self) -> None:
         """Options are asked for with what they need."""

@@ -92,7 +92,7 @@ def _trains(places: Array, amplitudes: Complex, length: float) -> tuple[Complex,
     """A and R (2,) of a wave length [m], and the square of the misfit."""
     phase = 2j * math.pi / length * (places - places.mean())
     both = np.stack([np.exp(-phase), np.exp(phase)], axis=1)
-    trains: Complex = np.linalg.lstsq(both, amplitudes, rcond=None)[0]
+    trains = np.asarray(np.linalg.lstsq(both, amplitudes, rcond=None)[0], np.complex128)
     misfit = amplitudes - both @ trains
     return trains, float((misfit * misfit.conj()).real.sum())
 

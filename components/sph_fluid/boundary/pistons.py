@@ -8,7 +8,8 @@ the work that the fluid does on them.
 """
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from typing import Protocol
 
 import numpy as np
 
@@ -26,22 +27,51 @@ from quintet.interfaces.component import Fields
 from quintet.interfaces.errors import SceneError, StepError
 
 SAVED = "pistons"  # key of a saved state: time [s] and work [J]
+CORRECTED = "pistons_corrected"  # key of a saved state: displacements [m] that were added
 JUMP = 0.02  # spacings: how far pistons may be from where a state has them
+
+
+class Correction(Protocol):
+    """What is added to the motion of a piston, by the state of the fluid."""
+
+    forward: Array  # (3,) 1, along which it is displaced
+
+    def velocity(self, state: State, time: float, displacement: float) -> float:
+        """Velocity [m/s] that is added at a time [s], of a piston displaced so far [m]."""
 
 
 class Part:
     """One piston: its particles and their images where the scene has them, and its trajectory."""
 
-    def __init__(self, params: SphFluidParams, number: int) -> None:
+    def __init__(self, params: SphFluidParams, number: int, correction: Correction | None) -> None:
         piston = params.boundary.pistons[number]
         self.points, self.images = moving(params, piston)  # (k, 3) m
-        self.trajectory: Trajectory = piston.motion.trajectory
-        self.axis, self.point = piston.motion.direction, np.array(piston.motion.point)
+        self.trajectory: Trajectory = piston.path.trajectory
+        self.axis, self.point = piston.path.direction, np.array(piston.path.point)
+        self.correction = correction
+        self.added, self.added_velocity, self.clock = 0.0, 0.0, 0.0  # m, m/s, s
+
+    def correct(self, state: State, time: float) -> None:
+        """Choose the velocity that is added in a step that begins at a time [s]."""
+        self.clock = time
+        if self.correction is not None:
+            forward = self.correction.forward
+            place = self.trajectory.at(time).place.tolist()
+            along = sum(float(n) * x for n, x in zip(forward, place[:3], strict=True))
+            self.added_velocity = self.correction.velocity(state, time, along + self.added)
+
+    def finish(self, dt: float) -> None:
+        """Go on to the end of a step [s]."""
+        self.added += dt * self.added_velocity
+        self.clock += dt
 
     def at(self, points: Array, time: float) -> Array:
         """Places (k, 3) m of points (k, 3) m of it at a time [s]."""
         place = self.trajectory.at(time).place
         angle = float(place[3])
+        if self.correction is not None:
+            added = self.added + (time - self.clock) * self.added_velocity
+            return np.asarray(points + (place[:3] + added * self.correction.forward))
         if angle == 0.0:
             return points + place[:3]
         arm = points - self.point
@@ -62,10 +92,13 @@ class MovingPistons:
         samples: Samples,
         ranks: Ranks,
         density_at: Callable[[Array], Array],
+        corrections: Mapping[int, Correction],
     ) -> None:
         self.params, self.samples, self.ranks = params, samples, ranks
         self.density_at = density_at  # kg/m3 of walls at places (n, 3) m, at the start
-        self.parts = [Part(params, number) for number in range(len(params.boundary.pistons))]
+        count = len(params.boundary.pistons)
+        self.parts = [Part(params, n, corrections.get(n)) for n in range(count)]
+        self.corrected = [part for part in self.parts if part.correction is not None]
         self.end = min(part.trajectory.end for part in self.parts)  # s
         self.links = 0  # samples that links bring, which theirs follow
         self.time, self.work = 0.0, 0.0
@@ -103,6 +136,8 @@ class MovingPistons:
                 f"{self.end:g} s, and a step goes on to {end:g} s. Extend it, or end the run "
                 "before."
             )
+        for part in self.corrected:
+            part.correct(state, self.time)
         middle = self.time + 0.5 * dt
         ends = [self._places(time) for time in (self.time, end)]
         self.velocity = (ends[1] - ends[0]) / dt
@@ -129,6 +164,8 @@ class MovingPistons:
         per_metre = self.params.slab_thickness
         self.work -= dt * per_metre * float((force * self.velocity).sum(axis=1).sum())
         self.time += dt
+        for part in self.corrected:
+            part.finish(dt)
 
     def forces_of_links(self, state: State) -> Array:
         """Forces (samples, 3) N on the samples that links bring."""
@@ -136,11 +173,17 @@ class MovingPistons:
 
     def save(self) -> dict[str, Array]:
         """Copy out their clock, and their work."""
-        return {SAVED: np.array([self.time, self.work])}
+        saved = {SAVED: np.array([self.time, self.work])}
+        if self.corrected:
+            saved[CORRECTED] = np.array([part.added for part in self.corrected])
+        return saved
 
     def load(self, state: Fields) -> None:
         """Come back to a saved state."""
         self.time, self.work = np.asarray(state.get(SAVED, np.zeros(2))).tolist()
+        none = np.zeros(len(self.corrected))
+        for part, added in zip(self.corrected, state.get(CORRECTED, none).tolist(), strict=True):
+            part.added, part.clock = added, self.time
 
     def refuse_jump(self, saved: Fields) -> None:
         """Refuse the state of another run in which pistons stand elsewhere than at their start.

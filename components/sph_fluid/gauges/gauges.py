@@ -25,10 +25,10 @@ import numpy as np
 
 from quintet.components.shared.search.neighbours import Lists
 from quintet.components.shared.smoothing.cubic_spline import SUPPORT
-from quintet.components.shared.smoothing.smoothing import kernel
 from quintet.components.sph_fluid.boundary.symmetry_planes import SymmetryPlanes
 from quintet.components.sph_fluid.constants import constants
-from quintet.components.sph_fluid.gauges.kernels import add_around, fill_columns, furthest
+from quintet.components.sph_fluid.gauges.kernels import add_around, furthest
+from quintet.components.sph_fluid.gauges.levels import SURFACE, Levels
 from quintet.components.sph_fluid.gauges.nearness import near_places
 from quintet.components.sph_fluid.mass_balance.sums import without_buffers
 from quintet.components.sph_fluid.motion.frame import Frame
@@ -42,10 +42,6 @@ if TYPE_CHECKING:
     from quintet.components.sph_fluid.gauges.flow import FlowGauges
 
 FULL = 0.85  # of the room that walls leave: so much is filled where there is but fluid
-FINE = 0.25  # spacings between the heights at which the share of volume is looked at
-SURFACE = 0.5  # share of the room at the surface
-DROP = 2.0  # particles on one spot whose share of volume is not yet a surface
-DEEP = 4.0  # spacings, of the share of volume along a column that is no drop
 
 
 class Gauges:
@@ -63,15 +59,10 @@ class Gauges:
             self.points[:, 1] = self.spots[:, 1] = 0.5 * sum(
                 corner[1] for corner in params.extents[0]
             )
-        # (k m, 3 or 2) m: these, and from where images see what these see in them.
+        # (k m, 3) m: these, and from where images see what these see in them.
         self.image_points = symmetry.all_images(self.points)
-        self.above = symmetry.all_images(self.spots)
-        walls = params.boundary.tank
-        boxes = [walls] if walls else params.extents
-        self.floor = min(box[0][2] for box in boxes)  # m
-        volume = self.constants.mass / self.constants.density
+        self.levels = Levels(params, symmetry, ranks, self.spots)
         self.flow = _flow_gauges(params, symmetry, ranks)
-        self.lone = volume * float(kernel(0.0, self.constants.smoothing))  # 1, V W(0)
 
     def read(self, state: State, lists: Lists) -> Fields:
         """Read all gauges; `lists` are those of this state, if it has any yet."""
@@ -79,7 +70,7 @@ class Gauges:
         if len(self.points):
             readings["pressure_gauge.pressure"] = self._pressure(state)
         if len(self.spots):
-            readings["level_gauge.height"] = self._height(state)
+            readings["level_gauge.height"] = self.levels.heights(state)
         if self.params.gauges.front_gauge is not None:
             readings["front_gauge.position"] = self._front(state, lists)
         if self.params.gauges.motion_gauge:
@@ -102,33 +93,6 @@ class Gauges:
         least = np.where(share < SURFACE * (1.0 - walls), 0.0, self.constants.lowest)
         return np.maximum(pressure, least)
 
-    def _height(self, state: State) -> Array:
-        z, spacing = state.position_density[: state.fluid, 2], self.params.spacing
-        reach, rise = self.reach, FINE * spacing
-        highest, depth = self.ranks.greatest(float(z.max()), float(-z.min()))
-        bottom = -depth - reach
-        count = math.ceil((highest + reach - bottom) / rise) + 1
-        share = np.empty((len(self.above), count))
-        position, _, split = self.ranks.near(state, partial(near_places, self.above, self.reach))
-        fill_columns(self.above, bottom, rise, split, position, self.constants, share)
-        whole = share.reshape(-1, len(self.spots), count).sum(axis=0)
-        return np.array([self._surface(row, bottom, rise) for row in whole])
-
-    def _surface(self, share: Array, bottom: float, rise: float) -> float:
-        most = min(1.0, float(share.max()))
-        if most <= DROP * self.lone and not self._is_deep(share, rise):
-            return self.floor
-        half = SURFACE * most
-        k = int(np.flatnonzero(share >= half)[-1])  # never the last: there the share is 0
-        part = (share[k] - half) / (share[k] - share[k + 1])
-        return float(bottom + (k + part) * rise)
-
-    def _is_deep(self, share: Array, rise: float) -> bool:
-        """Whether a column holds water where drops alone fill as much as water does."""
-        if DROP * self.lone <= SURFACE:
-            return False
-        return float(share.sum()) * rise > DEEP * self.params.spacing
-
     def _front(self, state: State, lists: Lists) -> Array:
         axis = "xyz".index(str(self.params.gauges.front_gauge))
         along = state.position_density[: state.fluid, axis].copy()
@@ -137,7 +101,9 @@ class Gauges:
             along[is_held] = -math.inf
         ahead = -math.inf
         if len(state.reference):
-            ahead = furthest(along, 1.0 / self.lone, state.position_density, lists, self.constants)
+            ahead = furthest(
+                along, 1.0 / self.levels.lone, state.position_density, lists, self.constants
+            )
         # At the start there are no lists, and no spray either.
         ahead, furthest_of_all = self.ranks.greatest(ahead, float(along.max()))
         front = ahead if math.isfinite(ahead) else furthest_of_all

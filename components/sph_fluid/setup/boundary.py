@@ -6,6 +6,7 @@ from typing import ClassVar, Literal
 from quintet.components.shared.geometry.bounds import Bounds
 from quintet.components.shared.geometry.shapes import Box
 from quintet.components.sph_fluid.setup.boundary_meshes import BoundaryMesh
+from quintet.components.sph_fluid.setup.damping_zones import DampingZone
 from quintet.components.sph_fluid.setup.geometry import FACES, Axis, Exponent, Face, UprightFace
 from quintet.components.sph_fluid.setup.inflow_outflow import Inflow, Outflow
 from quintet.components.sph_fluid.setup.motion import Motion
@@ -46,6 +47,8 @@ class Boundary:
         How the tank with all that stands in it moves; the fluid is computed in its frame.
     pistons
         Parts of the boundary that move by themselves, while the others stand.
+    damping
+        Zones that damp the fluid's motion, so that waves end there.
     wall_offset : 1
         Spacings from a wall's face out to its first particles; 0.5 with mdbc.
     sample_depth : 1
@@ -83,6 +86,7 @@ class Boundary:
     meshes: tuple[BoundaryMesh, ...] = ()
     motion: Motion | None = None
     pistons: tuple[Piston, ...] = ()
+    damping: tuple[DampingZone, ...] = ()
     wall_offset: Positive = 0.5
     sample_depth: NotNegative = 0.5
     wall_viscosity_factor: Fraction = 1.0

@@ -2,6 +2,7 @@
 
 from quintet.components.sph_fluid.setup.boundary import Boundary
 from quintet.components.sph_fluid.setup.motion import Motion
+from quintet.components.sph_fluid.setup.wave_maker import Waves
 
 ACROSS = 1e-12  # of a unit vector: how far an axis may lean from an axis of coordinates
 
@@ -30,7 +31,7 @@ def check_motion(boundary: Boundary, motion: Motion, dimensions: int) -> None:
             )
 
 
-def is_along(motion: Motion, name: str) -> bool:
+def is_along(motion: Motion | Waves, name: str) -> bool:
     """Whether nothing is displaced along an axis, and all is turned about it."""
     axis = "xyz".index(name)
     leaning = [abs(part) for k, part in enumerate(motion.direction) if k != axis]

@@ -27,24 +27,29 @@ def check_pistons(boundary: Boundary, dimensions: int, spacing: float) -> None:
             )
         _check_part(where, piston, boundary, dimensions)
         _check_start(where, piston, boundary, spacing)
-        if dimensions == 2 and not is_along(piston.motion, "y"):
+        if dimensions == 2 and not is_along(piston.path, "y"):
             raise ValueError(
                 f"{where}.motion must stay in the plane of x and z in two dimensions: displaced by "
                 "nothing along y, and turned about y. Correct it, or set dimensions to 3."
             )
         for face in boundary.symmetry:
-            if not is_along(piston.motion, face[0]):
+            if not is_along(piston.path, face[0]):
                 raise ValueError(
                     f"{where}.motion must stay in the plane of boundary.symmetry {face}: displaced "
                     f"by nothing along {face[0]}, and turned about {face[0]}. Correct it, or make "
                     "the face a wall."
                 )
+        if piston.face and piston.waves is not None:
+            raise ValueError(
+                f"{where}: {piston.part} must not make waves, as a paddle swings to both sides and "
+                "a face of the tank goes into it alone. Take an obstacle that reaches across."
+            )
         if piston.face:
             _check_face(where, piston, boundary, spacing)
             _check_way(where, piston, boundary, _swept_by_face(piston, boundary), spacing)
         elif (box := piston.number("obstacles")) >= 0:
             _check_dry_faces(where, piston, boundary, box, spacing, dimensions)
-            if not piston.motion.turns:
+            if not piston.path.turns:
                 swept = _swept_by_box(piston, boundary.solids[box])
                 _check_way(where, piston, boundary, swept, spacing)
                 _check_inside(where, piston, boundary, swept, dimensions)
@@ -77,9 +82,9 @@ def _check_part(where: str, piston: Piston, boundary: Boundary, dimensions: int)
 
 def _check_start(where: str, piston: Piston, boundary: Boundary, spacing: float) -> None:
     """A motion begins where the part stands in the scene, outside of the fluid."""
-    place = piston.motion.trajectory.at(0.0).place
+    place = piston.path.trajectory.at(0.0).place
     shift, angle = math.hypot(*place[:3].tolist()), float(place[3])
-    arms = [math.dist(corner, piston.motion.point) for corner in _corners(piston, boundary)]
+    arms = [math.dist(corner, piston.path.point) for corner in _corners(piston, boundary)]
     if shift + abs(angle) * max(arms, default=0.0) > START * spacing:
         raise ValueError(
             f"{where}.motion must begin at no displacement and no angle, where {piston.part} "
@@ -103,7 +108,7 @@ def _corners(piston: Piston, boundary: Boundary) -> Array:
 def _check_face(where: str, piston: Piston, boundary: Boundary, spacing: float) -> None:
     """A face moves into the tank, along its normal: behind it are no walls."""
     axis, sign = "xyz".index(piston.face[0]), 1.0 if piston.face[1] == "-" else -1.0
-    motion, across = piston.motion, list(piston.motion.shifts)
+    motion, across = piston.path, list(piston.path.shifts)
     across[axis] = False
     if motion.turns or any(across):
         raise ValueError(
@@ -128,14 +133,14 @@ def _swept_by_face(piston: Piston, boundary: Boundary) -> Array:
     assert boundary.tank is not None
     swept = np.array([boundary.tank])
     axis, is_lower = "xyz".index(piston.face[0]), piston.face[1] == "-"
-    furthest = piston.motion.least(axis, -1.0 if is_lower else 1.0)
+    furthest = piston.path.least(axis, -1.0 if is_lower else 1.0)
     swept[0, int(is_lower), axis] = swept[0, int(not is_lower), axis] + furthest
     return swept
 
 
 def _swept_by_box(piston: Piston, box: Bounds) -> Array:
     """Corners (n, 2, 3) m of boxes that an obstacle goes through, one after the other."""
-    course = piston.motion.trajectory.course()[:, :3]
+    course = piston.path.trajectory.course()[:, :3]
     low = np.minimum(course[:-1], course[1:]) + np.array(box[0])
     high = np.maximum(course[:-1], course[1:]) + np.array(box[1])
     return np.stack([low, high], axis=1)
@@ -197,7 +202,7 @@ def _check_dry_faces(
         sides = [f"{name}{side}" for side in "-+"]
         closed = [face in boundary.closed_faces(dimensions) for face in sides]
         for side in range(2):
-            if touches[side, axis] and closed[side] and not is_along(piston.motion, name):
+            if touches[side, axis] and closed[side] and not is_along(piston.path, name):
                 raise ValueError(
                     f"{where}: {piston.part} must stay on the wall {sides[side]} that it touches: "
                     f"displaced by nothing along {name}, and turned about {name}. Let it stand off "

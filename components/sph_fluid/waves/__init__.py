@@ -1,0 +1,1 @@
+"""Waves on water of finite depth: theory, wave makers, absorption, damping zones."""

@@ -1,0 +1,115 @@
+"""Pistons that make waves and take in those that come back; imported only by a scene with some.
+
+A piston's velocity is corrected by that of long waves whose surface is the difference between the
+level in front of it, η, and the one that theory foresees there, η_I (Schäffer & Klopman, J.
+Waterway Port Coast. Ocean Eng. 126 (2000) 88, in shallow water; Altomare et al., Coast. Eng. 127
+(2017) 37, who call it AWAS):
+
+    dX/dt = dX_I/dt - √(g/h) (η - η_I)
+
+Levels are read at the begin of each step, two smoothing lengths in front of the paddle's face,
+where the kernel no longer feels it. They are means over spots across the paddle.
+"""
+
+import math
+
+import numpy as np
+
+from quintet.components.sph_fluid.boundary.symmetry_planes import SymmetryPlanes
+from quintet.components.sph_fluid.constants import constants
+from quintet.components.sph_fluid.gauges.levels import Levels
+from quintet.components.sph_fluid.params import SphFluidParams
+from quintet.components.sph_fluid.ranks.method import Ranks
+from quintet.components.sph_fluid.state import Array, State
+from quintet.components.sph_fluid.waves.paddle_motion import ForeseenSurface
+from quintet.interfaces.errors import StepError
+
+ACROSS = 4.0  # smoothing lengths from spot to spot across the paddle
+AHEAD = 2.0  # smoothing lengths from the face to the spots
+
+
+class Absorber:
+    """The correction of one piston."""
+
+    def __init__(
+        self, params: SphFluidParams, symmetry: SymmetryPlanes, ranks: Ranks, number: int
+    ) -> None:
+        waves = params.boundary.pistons[number].waves
+        assert waves is not None
+        distance = AHEAD * constants(params).smoothing.length
+        self.forward, self.level = waves.forward, waves.level  # (3,) 1; m
+        self.gain = math.sqrt(waves.gravity / waves.depth)  # 1/s
+        self.foreseen = ForeseenSurface(waves.trajectory, waves.water, distance, waves.height)
+        self.part, self.room = params.boundary.pistons[number].part, _room(params, number)  # m
+        self.spots = _spots(params, number, distance)  # (m, 2) m, at no displacement
+        self.levels = Levels(params, symmetry, ranks, self.spots)
+
+    def velocity(self, state: State, time: float, displacement: float) -> float:
+        """Velocity [m/s] that is added at a time [s], of a paddle displaced so far [m].
+
+        Raises
+        ------
+        StepError
+            Where the paddle has left its tank.
+        """
+        if not self.room[0] <= displacement <= self.room[1]:
+            raise StepError(
+                f"boundary.pistons: {self.part} must stay in the tank; it absorbed waves until it "
+                f"was displaced by {displacement:.3g} m, with room from {self.room[0]:.3g} to "
+                f"{self.room[1]:.3g} m. Move the walls, or lower the waves."
+            )
+        self.levels.place(self.spots + displacement * self.forward[:2])
+        elevation = float(self.levels.heights(state).mean()) - self.level
+        return -self.gain * (elevation - self.foreseen.at(time))
+
+
+def _spots(params: SphFluidParams, number: int, distance: float) -> Array:
+    """Spots (m, 2) m in a row, a distance [m] in front of a paddle's face, in the water."""
+    piston = params.boundary.pistons[number]
+    assert piston.waves is not None
+    forward = piston.waves.forward[:2]
+    along = np.array([-forward[1], forward[0]])
+    corners = _corners(params, number)
+    lows, highs = zip(*params.extents, strict=True)
+    water = np.array([np.min(lows, axis=0)[:2], np.max(highs, axis=0)[:2]])
+    face = float((corners[:, 0] * forward[0] + corners[:, 1] * forward[1]).max()) + distance
+    if params.dimensions == 2:
+        middle = float(water[:, 1].mean())
+        return np.array([[face * float(forward[0]), middle]])
+    wet = np.array([[x, y] for x in water[:, 0] for y in water[:, 1]])
+    sides = [points[:, 0] * along[0] + points[:, 1] * along[1] for points in (corners, wet)]
+    low, high = max(s.min() for s in sides), min(s.max() for s in sides)
+    spacing = ACROSS * constants(params).smoothing.length
+    count = max(1, round((high - low) / spacing))
+    places = low + (high - low) * (np.arange(count) + 0.5) / count
+    return np.asarray(face * forward + places[:, np.newaxis] * along)
+
+
+def _room(params: SphFluidParams, number: int) -> tuple[float, float]:
+    """Least and greatest displacement [m] that keep a paddle inside the closed walls."""
+    piston, boundary = params.boundary.pistons[number], params.boundary
+    assert piston.waves is not None
+    corners, room = _corners(params, number), [-math.inf, math.inf]
+    for face in params.closed_faces if boundary.tank else ():
+        axis, is_upper = "xyz".index(face[0]), face[1] == "+"
+        part = float(piston.waves.forward[axis])
+        if part == 0.0:
+            continue
+        assert boundary.tank is not None
+        side = corners[:, axis].max() if is_upper else corners[:, axis].min()
+        way = (boundary.tank[int(is_upper)][axis] - float(side)) / part
+        end = int(is_upper == (part > 0.0))
+        room[end] = min(room[end], way) if end else max(room[end], way)
+    return room[0], room[1]
+
+
+def _corners(params: SphFluidParams, number: int) -> Array:
+    """Corners (n, 3) m of a paddle where the scene has it."""
+    piston, boundary = params.boundary.pistons[number], params.boundary
+    if (box := piston.number("obstacles")) >= 0:
+        low, high = boundary.solids[box]
+        return np.array([[x, y, low[2]] for x in (low[0], high[0]) for y in (low[1], high[1])])
+    # Left out of scenes without boundaries from files.
+    from quintet.components.sph_fluid.setup.mesh_surfaces import placed
+
+    return np.asarray(placed(boundary.meshes[piston.number("meshes")]).corner.reshape(-1, 3))
