@@ -8,6 +8,9 @@ mean. Its complex amplitudes are those of two wave trains that run against each 
 in least squares over the places (Mansard & Funke, Proc. 17th Int. Conf. Coast. Eng. (1980) 154;
 with two places Goda & Suzuki, Proc. 15th (1976) 828). Where k is not known it is the one that fits
 best; this needs three places.
+
+The height, from trough to crest, is that of the fitted curve at each place, with its overtones,
+times |A|/|B|; its mean over the places counts.
 """
 
 import math
@@ -23,6 +26,8 @@ from quintet.interfaces.params import Number, Positive, parameters
 
 HARMONICS = 3  # that are fitted in time
 FEWEST = 2  # places; 3 where the length is sought
+PHASES = 720  # of a period, at which the fitted curve is looked at
+TINY = 1e-3  # of the wave's amplitude: a node, where its curve says nothing
 CYCLES = 0.99  # that a curve must hold
 TRIALS = 400  # lengths that are looked at, before the best one is refined
 SHARPENED = 60  # steps of the golden section
@@ -77,15 +82,29 @@ def fit(curves: Curve, line: WaveLine) -> Train:
     if len(times) < 4 * HARMONICS or times[-1] < CYCLES * line.period:
         return Train(math.nan, math.nan, math.nan)
     omega = 2.0 * math.pi / line.period
-    columns = [np.ones_like(times)]
-    for n in range(1, HARMONICS + 1):
-        columns += [np.cos(n * omega * times), np.sin(n * omega * times)]
-    factors = np.linalg.lstsq(np.stack(columns, axis=1), curves.values, rcond=None)[0]
+    factors = np.linalg.lstsq(_columns(omega * times), curves.values, rcond=None)[0]
     amplitudes = factors[1] - 1j * factors[2]  # (k,) B
     places = np.array(line.places)
     length = line.length or _best_length(places, amplitudes)
     forth, back = _trains(places, amplitudes, length)[0].tolist()
-    return Train(2.0 * abs(forth), abs(back) / abs(forth) if forth else math.nan, length)
+    if not forth:
+        return Train(0.0, math.nan, length)
+    share = abs(forth) / np.maximum(np.abs(amplitudes), TINY * abs(forth))
+    return Train(float((_ranges(factors) * share).mean()), abs(back) / abs(forth), length)
+
+
+def _ranges(factors: Array) -> Array:
+    """From the lowest to the highest value (k,) of harmonics with factors (1 + 2n, k)."""
+    phases = np.linspace(0.0, 2.0 * math.pi, PHASES, endpoint=False)
+    return np.asarray(np.ptp(_columns(phases) @ factors, axis=0))
+
+
+def _columns(phases: Array) -> Array:
+    """One, cosines and sines (m, 1 + 2n) of phases (m,) rad and of their multiples."""
+    columns = [np.ones_like(phases)]
+    for n in range(1, HARMONICS + 1):
+        columns += [np.cos(n * phases), np.sin(n * phases)]
+    return np.stack(columns, axis=1)
 
 
 def _trains(places: Array, amplitudes: Complex, length: float) -> tuple[Complex, float]:

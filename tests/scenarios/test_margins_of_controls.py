@@ -31,6 +31,7 @@ NOT_RUN = {
     "shock_layer_oblique",
     "dam_break_cubes",
     "sloshing",
+    "wave_flume",
 }
 
 

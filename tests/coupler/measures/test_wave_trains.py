@@ -18,12 +18,12 @@ PLACES = (1.0, 1.3, 1.75, 2.4)
 LEVELS = Port("level_gauge", (Field("height", (), "m"),))
 
 
-def levels(times, places=PLACES):
-    """Levels (m, k) m of two trains on water 0.4 m deep, with a bound second harmonic."""
+def levels(times, places=PLACES, reflection=REFLECTION, second=0.0):
+    """Levels (m, k) m of two trains on water 0.4 m deep, the first with a second harmonic."""
     t, x = times[:, np.newaxis], np.array(places)
     omega, k = 2.0 * math.pi / PERIOD, 2.0 * math.pi / LENGTH
     forth, back = omega * t - k * x, omega * t + k * x + 0.7
-    waves = np.cos(forth) + REFLECTION * np.cos(back) + 0.2 * np.cos(2.0 * forth)
+    waves = np.cos(forth) + reflection * np.cos(back) + second * np.cos(2.0 * forth)
     return 0.4 + 0.5 * HEIGHT * waves
 
 
@@ -37,6 +37,17 @@ def test_two_trains_are_told_apart(begin, items, length):
     line = WaveLine(items=tuple(range(items)), places=PLACES[:items], period=PERIOD, length=length)
     train = fit(Curve(times, levels(times, PLACES[:items])), line)
     assert train == pytest.approx((HEIGHT, REFLECTION, LENGTH), rel=1e-5)
+
+
+@pytest.mark.parametrize(("reflection", "within"), [(0.0, 1e-4), (0.05, 0.02)])
+def test_the_height_is_that_from_trough_to_crest(reflection, within):
+    """cos θ + 0.5 cos 2θ is 0.75 below its mean at least, and 1.5 above at most."""
+    times = np.linspace(0.0, 4 * PERIOD, 300)
+    curves = Curve(times, levels(times, reflection=reflection, second=0.5))
+    line = WaveLine(items=(0, 1, 2, 3), places=PLACES, period=PERIOD)
+    train = fit(curves, line)
+    assert train.height == pytest.approx(2.25 * 0.5 * HEIGHT, rel=within)
+    assert train[1:] == pytest.approx((reflection, LENGTH), rel=1e-5, abs=1e-8)
 
 
 def test_less_than_a_period_has_no_value():
