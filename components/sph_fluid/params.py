@@ -47,7 +47,8 @@ class SphFluidParams:
     dimensions
         In two: x and z.
     kernel
-        Cubic spline, or Wendland's C2, which keeps particles apart and calm.
+        Cubic spline; quintic spline, whose rows of particles slide most easily; or Wendland's C2,
+        which keeps particles apart and calm.
     smoothing : 1
         Smoothing length over spacing.
     staggered
@@ -118,7 +119,7 @@ class SphFluidParams:
     lost_limit: Fraction | None = None
     remove_inside_bodies: bool = False
     dimensions: Literal[2, 3] = 3
-    kernel: Literal["cubic", "wendland"] = "cubic"
+    kernel: Literal["cubic", "quintic", "wendland"] = "cubic"
     smoothing: Smoothing = 1.5
     staggered: bool = False
     density: Positive = 1000.0

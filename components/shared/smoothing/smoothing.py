@@ -9,13 +9,13 @@ from typing import Literal, NamedTuple
 
 from numba import njit
 
-from quintet.components.shared.smoothing import cubic_spline, wendland
+from quintet.components.shared.smoothing import cubic_spline, quintic_spline, wendland
 from quintet.components.shared.smoothing.cubic_spline import SUPPORT
 
 TINY = 1e-12  # h²
-KERNELS = ("cubic", "wendland")
+KERNELS = ("cubic", "quintic", "wendland")
 
-Kernel = Literal["cubic", "wendland"]
+Kernel = Literal["cubic", "quintic", "wendland"]
 
 
 class Smoothing(NamedTuple):
@@ -23,7 +23,8 @@ class Smoothing(NamedTuple):
 
     length: float  # m, h
     tiny: float  # m2, added to r² so that a particle does not divide by its distance from itself
-    wendland: bool | None  # True, or None if the kernel is the cubic spline
+    quintic: bool | None  # True if the kernel is the quintic spline, or None
+    wendland: bool | None  # True if it is Wendland's, or None; without both the cubic spline
     height: float  # 1/m3, scale of W; in two dimensions 1/m2
     slope: float  # 1/m4, scale of dW/dr; of Wendland's 1/m5, of (dW/dr)/r
 
@@ -38,8 +39,9 @@ def smoothing(kernel: Kernel, dimensions: int, length: float) -> Smoothing:
 
     Parameters
     ----------
-    kernel : "cubic" or "wendland"
-        Monaghan's cubic spline (1992), or Wendland's of class C2 (1995).
+    kernel : "cubic", "quintic" or "wendland"
+        Monaghan's cubic spline (1992), the quintic spline of Morris et al. (1997), or Wendland's of
+        class C2 (1995).
     dimensions : int
         2 or 3.
     length : float, m
@@ -50,14 +52,22 @@ def smoothing(kernel: Kernel, dimensions: int, length: float) -> Smoothing:
     Smoothing
         With ∫W dV = 1.
     """
-    smooth = kernel == "wendland"
-    alpha = (wendland if smooth else cubic_spline).normalisation(dimensions, length)
+    if kernel == "wendland":
+        alpha = wendland.normalisation(dimensions, length)
+        height, slope = alpha / 16.0, -0.625 * alpha / length**2
+    elif kernel == "quintic":
+        alpha = quintic_spline.normalisation(dimensions, length)
+        height, slope = alpha / 32.0, -15.0 * alpha / (32.0 * length)
+    else:
+        alpha = cubic_spline.normalisation(dimensions, length)
+        height, slope = 0.25 * alpha, -0.75 * alpha / length
     return Smoothing(
         length=length,
         tiny=TINY * length * length,
-        wendland=True if smooth else None,
-        height=alpha / 16.0 if smooth else 0.25 * alpha,
-        slope=-0.625 * alpha / length**2 if smooth else -0.75 * alpha / length,
+        quintic=True if kernel == "quintic" else None,
+        wendland=True if kernel == "wendland" else None,
+        height=height,
+        slope=slope,
     )
 
 
@@ -67,6 +77,8 @@ def kernel(r2, smoothing):  # type: ignore[no-untyped-def]
     q = math.sqrt(r2 + smoothing.tiny) / smoothing.length
     if smoothing.wendland is not None:
         return smoothing.height * wendland.shape(q)
+    if smoothing.quintic is not None:
+        return smoothing.height * quintic_spline.shape(q)
     return smoothing.height * cubic_spline.shape(q)
 
 
@@ -79,6 +91,8 @@ def gradient(r2, per_r, smoothing):  # type: ignore[no-untyped-def]
     q = math.sqrt(r2 + smoothing.tiny) / smoothing.length
     if smoothing.wendland is not None:
         return smoothing.slope * wendland.slope(q)
+    if smoothing.quintic is not None:
+        return smoothing.slope * quintic_spline.slope(q) * per_r
     return smoothing.slope * cubic_spline.slope(q) * per_r
 
 
@@ -91,6 +105,7 @@ def with_length(smoothing, length, dimensions):  # type: ignore[no-untyped-def]
     return Smoothing(
         length,
         smoothing.tiny / (ratio * ratio),
+        smoothing.quintic,
         smoothing.wendland,
         smoothing.height * scale,
         smoothing.slope * steeper,

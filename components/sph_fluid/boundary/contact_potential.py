@@ -28,7 +28,7 @@ import math
 import numpy as np
 
 from quintet.components.shared.search.neighbours import Lists
-from quintet.components.shared.smoothing import cubic_spline, wendland
+from quintet.components.shared.smoothing import cubic_spline, quintic_spline, wendland
 from quintet.components.shared.smoothing.cubic_spline import SUPPORT
 from quintet.components.shared.threads import Team
 from quintet.components.sph_fluid.boundary.kernels.contact_energy import stored_energy
@@ -152,12 +152,14 @@ def wall_force(distance: float, params: SphFluidParams, exponent: int | None = N
 
 def shape(q: float, params: SphFluidParams) -> float:
     """W over its scale, q = r/h."""
-    kernel = wendland if params.kernel == "wendland" else cubic_spline
-    return float(kernel.shape.py_func(q))
+    kernels = {"cubic": cubic_spline, "quintic": quintic_spline, "wendland": wendland}
+    return float(kernels[params.kernel].shape.py_func(q))
 
 
 def slope(q: float, params: SphFluidParams) -> float:
     """-dW/dq over the same."""
     if params.kernel == "wendland":
         return 10.0 * q * float(wendland.slope.py_func(q))
+    if params.kernel == "quintic":
+        return 15.0 * float(quintic_spline.slope.py_func(q))
     return 3.0 * float(cubic_spline.slope.py_func(q))
