@@ -12,8 +12,6 @@ from quintet.coupler.scene.read import library, load, load_variants
 UNMET = {
     "dam_break_box": {"p3.arrival", "front.arrival"},
     "dam_break_box quick": {"p1.arrival", "p3.arrival", "front.arrival"},
-    "sloshing": {"period"},
-    "sloshing quick": {"period"},
     "dam_break_front smooth": {"front.martin_moyce", "front.koshizuka_oka"},
 }
 
