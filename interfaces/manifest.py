@@ -82,6 +82,8 @@ class ConformCase:
         momentum; else empty.
     activity : mapping of tuples of str
         Of a field ``active``: ports whose items it is about, beside its own.
+    device : str
+        On which it computes.
     """
 
     name: str
@@ -95,6 +97,7 @@ class ConformCase:
     any_time: bool = True
     forces: tuple[str, ...] = ()
     activity: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    device: str = "cpu"
 
 
 @dataclass(frozen=True, slots=True)

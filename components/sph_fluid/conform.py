@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 
 from quintet.interfaces.component import Fields
+from quintet.interfaces.libraries import is_installed
 from quintet.interfaces.manifest import ConformCase
 
 DROP: dict[str, Any] = {
@@ -89,6 +90,21 @@ def cases() -> tuple[ConformCase, ...]:
         _case("drop in a tank that repeats", turning | {"gauges": {"mass_gauge": True}}),
         ConformCase("channel with inflow and outflow", CHANNEL, dt=1e-4, still=False),
         ConformCase("flume with a wave maker", FLUME, dt=1e-4, still=False),
+        *on_devices(),
+    )
+
+
+def on_devices() -> tuple[ConformCase, ...]:
+    """Two kinds of walls on a device, where the library of devices is installed."""
+    if not is_installed("pyopencl"):
+        return ()
+    walls = {"walls": ROLLING["walls"]}
+    mirrored = DROP | MIRRORED | {"boundary": walls | {"method": "mdbc"}, "gauges": GAUGES}
+    dynamic = DROP | {"boundary": walls | {"method": "dbc"}}
+    tables = {"mirrored": mirrored, "dynamic": dynamic}
+    return tuple(
+        ConformCase(f"drop between {name} walls, OpenCL", table, dt=1e-4, device="opencl")
+        for name, table in tables.items()
     )
 
 

@@ -105,7 +105,8 @@ class Trial:
 
     def make(self, **resources: Any) -> Component:
         """Make the component, unjoined."""
-        return make(self.manifest.load(), self.params, Resources(folder=self.folder, **resources))
+        places = {"folder": self.folder, "device": self.case.device, **resources}
+        return make(self.manifest.load(self.case.device), self.params, Resources(**places))
 
     def build(self, without: str = "", **resources: Any) -> Component:
         """Make the component and join its ports, but for one if it is named."""

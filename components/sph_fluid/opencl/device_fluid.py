@@ -16,8 +16,10 @@ from quintet.components.sph_fluid.opencl.stepping import Stepping
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.ports import SHOWS
 from quintet.components.sph_fluid.setup.tait import TAIT
-from quintet.interfaces.component import ONE_THREAD, Component, Fields, Keys, Resources, Totals
+from quintet.interfaces.component import Component, Fields, Keys, Resources, Totals
 from quintet.interfaces.errors import SceneError
+
+FIRST_DEVICE = Resources(device="opencl")
 
 
 class DeviceFluid(Component):
@@ -29,7 +31,7 @@ class DeviceFluid(Component):
     shows = SHOWS
     compiles = True
 
-    def __init__(self, params: SphFluidParams, resources: Resources = ONE_THREAD) -> None:
+    def __init__(self, params: SphFluidParams, resources: Resources = FIRST_DEVICE) -> None:
         refuse_what_needs_the_processor(params, resources.device)
         device = device_of(resources.device)
         if not device.has_doubles:

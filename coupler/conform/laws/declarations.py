@@ -145,14 +145,15 @@ def describe_tells_what_its_ports_announce(trial: Trial) -> None:
 
 def it_is_made_with_resources_or_without(trial: Trial) -> None:
     """Two threads are taken without an error; resources that may be left out change no bit."""
-    cls = trial.manifest.load()
+    cls = trial.manifest.load(trial.case.device)
     taken = list(inspect.signature(cls).parameters.values())
     if len(taken) < 2:
         raise DoesNotApply("its constructor takes no resources")
     trial.move(trial.build(threads=2))
     if taken[1].default is inspect.Parameter.empty:
         return
-    outputs_alone = trial.join(cls(trial.params, Resources(folder=trial.folder)))
+    resources = Resources(folder=trial.folder, device=trial.case.device)
+    outputs_alone = trial.join(cls(trial.params, resources))
     without = trial.join(cls(trial.params))
     require_same_bits(
         trial.move(without)[-1],

@@ -182,9 +182,11 @@ def paths(kind: Type, path: str) -> Iterator[str]:
 
 def ulps(first: np.ndarray, second: np.ndarray, scale: Any = 0.0) -> float:
     """Largest difference, in units of the last place of the larger number, or of a scale."""
-    same = (first == second) | (np.isnan(first) & np.isnan(second))
+    apart = ~((first == second) | (np.isnan(first) & np.isnan(second)))
+    scale = np.broadcast_to(scale, first.shape)[apart]
+    first, second = first[apart], second[apart]
     largest = np.maximum(np.maximum(np.abs(first), np.abs(second)), scale)
-    return float((np.abs(first - second)[~same] / np.spacing(largest[~same])).max(initial=0.0))
+    return float((np.abs(first - second) / np.spacing(largest)).max(initial=0.0))
 
 
 def scale_of(law: Law, rows: list[tuple[Any, ...]], results: np.ndarray) -> Any:
