@@ -8,7 +8,7 @@ EXAMPLES = {
     ),
     "describe": ("quintet describe sph_fluid boundary", "quintet describe link fsi"),
     "materials": ("quintet materials", "quintet materials steel-4340"),
-    "devices": ("quintet devices",),
+    "devices": ("quintet devices", "quintet devices --json"),
     "schema": ("quintet schema > scene.schema.json", "quintet schema two_springs --import"),
     "new": ("quintet new scene first_try", "quintet new component my_solver --out solver"),
     "run": (

@@ -41,7 +41,8 @@ def add_commands(command: Command) -> None:
     named = command("materials", materials, "list materials by name, with constants and sources")
     named.add_argument("name", nargs="?", default="", help="print the constants of this material")
     named.add_argument("--json", action="store_true", help="print JSON")
-    command("devices", devices, "list OpenCL devices: memory, double precision, bandwidth")
+    machine = command("devices", devices, "list OpenCL devices: memory, precision, bandwidth")
+    machine.add_argument("--json", action="store_true", help="print JSON")
     editors = command("schema", schema, "print a JSON schema of scene files, for editors")
     editors.add_argument(
         "scene", nargs="?", help="scene whose kinds module:Class the schema includes"
@@ -51,7 +52,8 @@ def add_commands(command: Command) -> None:
 
 def devices(options: argparse.Namespace) -> int:
     """List the OpenCL devices of this machine, in a process that loads their drivers."""
-    return subprocess.run([sys.executable, "-m", "quintet.components.shared.opencl"]).returncode
+    program = [sys.executable, "-m", "quintet.components.shared.opencl"]
+    return subprocess.run([*program, *(["--json"] if options.json else [])]).returncode
 
 
 def list_scenes(options: argparse.Namespace) -> int:

@@ -1,12 +1,14 @@
-"""``quintet devices``: a table of the OpenCL devices of this machine."""
+"""``quintet devices``: a table of the OpenCL devices of this machine, or JSON with ``--json``."""
 
+import json
 import sys
+from collections.abc import Sequence
 
 from quintet.components.shared.opencl.devices import NO_DEVICE, bandwidth, devices
 from quintet.interfaces.errors import QuintetError, SceneError
 
 
-def main() -> int:
+def main(arguments: Sequence[str] = ()) -> int:
     """Print the devices; status 2 where there are none."""
     try:
         known = devices()
@@ -15,16 +17,29 @@ def main() -> int:
     except QuintetError as error:
         print(error, file=sys.stderr)
         return 2
-    for device in known:
-        doubles = "double precision" if device.has_doubles else "no double precision"
-        print(f"opencl:{device.number}  {device.name}")
+    rows = [
+        {
+            "device": f"opencl:{device.number}",
+            "name": device.name,
+            "units": device.units,
+            "memory": device.memory,  # bytes
+            "doubles": device.has_doubles,
+            "bandwidth": bandwidth(device),  # bytes/s
+        }
+        for device in known
+    ]
+    if "--json" in arguments:
+        print(json.dumps(rows, indent=1))
+        return 0
+    for row in rows:
+        doubles = "double precision" if row["doubles"] else "no double precision"
+        print(f"{row['device']}  {row['name']}")
         print(
-            f"    {device.units} compute units, {device.memory / 2**30:.1f} GiB, {doubles}, "
-            f"copies {bandwidth(device) / 1e9:.1f} GB/s",
-            flush=True,
+            f"    {row['units']} compute units, {row['memory'] / 2**30:.1f} GiB, {doubles}, "
+            f"copies {row['bandwidth'] / 1e9:.1f} GB/s"
         )
     return 0
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(main(sys.argv[1:]))

@@ -1,6 +1,7 @@
 """A component computes where its scene says, or says why it cannot."""
 
 import importlib.util
+import json
 import subprocess
 import sys
 
@@ -79,6 +80,10 @@ def test_devices_are_listed_with_memory_precision_and_bandwidth(monkeypatch, cap
     assert listing.main() == 0
     said = capsys.readouterr().out
     assert said.startswith("opencl:0  ")
+    assert listing.main(["--json"]) == 0
+    first = json.loads(capsys.readouterr().out)[0]
+    assert first.keys() == {"device", "name", "units", "memory", "doubles", "bandwidth"}
+    assert first["device"] == "opencl:0" and first["bandwidth"] == 12.34e9
     assert "GiB" in said and "double precision" in said and "copies 12.3 GB/s" in said
 
 
