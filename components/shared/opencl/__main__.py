@@ -3,6 +3,7 @@
 import json
 import sys
 from collections.abc import Sequence
+from typing import Any
 
 from quintet.components.shared.opencl.devices import NO_DEVICE, bandwidth, devices
 from quintet.interfaces.errors import QuintetError, SceneError
@@ -17,7 +18,7 @@ def main(arguments: Sequence[str] = ()) -> int:
     except QuintetError as error:
         print(error, file=sys.stderr)
         return 2
-    rows = [
+    rows: list[dict[str, Any]] = [
         {
             "device": f"opencl:{device.number}",
             "name": device.name,
