@@ -5,9 +5,10 @@ a = (5 + 3√5)/20 and b = (5 - √5)/20: exact for strains that are linear, so 
 straight edges has no mode without energy but its six rigid ones. With h_i = (4λ_i - 1) x_i + 4 Σ_j
 λ_j x_ij of corners x_i and midside nodes x_ij, a field has the slope ∇x = Σ h_i ∇λ_i.
 
-An element that has yielded takes at each point the mean rate of dilatation, for plastic flow keeps
-its volume and would lock at four points; an elastic one takes that of each point, which bending
-needs. Forces are given by the transpose.
+An element that has yielded takes the mean rate of dilatation at its points, and a fifth of what
+each differs from it: plastic flow keeps its volume and would lock at four points, but a point whose
+volume nothing held would be turned inside out. An elastic element takes the rate of each point,
+which bending needs. Forces are given by the transpose.
 
 Each node has a share of the mass by the diagonal of the consistent mass matrix (Hinton, Rock &
 Zienkiewicz 1976): 1/36 at corners, 4/27 at midside nodes. The stiffness is the sum of those of the
@@ -75,6 +76,7 @@ LAMBDA[np.arange(LANES) % POINTS, np.arange(LANES)] = OWN
 THETA = 0.5, 1.0 / 6.0, 0.3883, 0.1117
 CORNER_OWN, CORNER_REST = 1.0 / (NODE_SHARES[0] * THETA[0]), 1.0 / (NODE_SHARES[0] * THETA[1])
 EDGE_OWN, EDGE_REST = 1.0 / (NODE_SHARES[4] * THETA[2]), 1.0 / (NODE_SHARES[4] * THETA[3])
+ALIKE = 0.8  # share of differences of dilatation that is left out where an element has yielded
 SPACING = 3.65  # of nodes of a regular tetrahedron, V^(1/3), over the length 2/√(V_q/V tr S)
 
 
@@ -259,7 +261,7 @@ def write_lengths(start, work, law):  # type: ignore[no-untyped-def]
 
 @njit(**FAST_LANEWISE)
 def average_dilatation(points, work, row, apart):  # type: ignore[no-untyped-def]
-    """Replace the traces of tensors at the points of elements that have yielded by their means.
+    """Bring the traces of tensors at the points of elements that have yielded near their means.
 
     Diagonals stand in rows `apart` from each other. The means are weighed with the volumes: the
     operator is its own transpose, and rates of strain and stresses do the same work.
@@ -275,7 +277,7 @@ def average_dilatation(points, work, row, apart):  # type: ignore[no-untyped-def
         for k in range(first, first + POINTS):
             at = row * LANES + k
             trace = work[at] + work[at + apart * LANES] + work[at + 2 * apart * LANES]
-            change = (mean - trace) / 3.0 if most > 0.0 else 0.0
+            change = ALIKE * (mean - trace) / 3.0 if most > 0.0 else 0.0
             work[at] += change
             work[at + apart * LANES] += change
             work[at + 2 * apart * LANES] += change
