@@ -79,12 +79,15 @@ PARAMS = {
         "density_diffusion": 0.1,
         **GAUGES,
     },
-    "pushed": {  # by a block that moves
+    "pushed": {  # by a block that moves, before a zone that damps
         "boundary__method": "mdbc",
         "boundary__walls": ((-0.2, 0.0, 0.0), (1.6, 0.4, 0.8)),
         "boundary__obstacles": [((-0.15, 0.0, 0.0), (0.0, 0.4, 0.8))],
         "boundary__pistons": [
             {"part": "obstacles.0", "motion": {"period": 0.2, "amplitude": [0.1, 0.0, 0.0]}}
+        ],
+        "boundary__damping": [
+            {"lowest": [0.2, 0.0, 0.0], "highest": [1.6, 0.4, 0.8], "towards": "x+", "rate": 5.0}
         ],
         "fluid": [DAM],
         "density_diffusion": 0.1,
