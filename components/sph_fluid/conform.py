@@ -20,6 +20,12 @@ ROLLING = {
     "walls": {"shape": "box", "lowest": [-0.1, -0.1, -0.1], "highest": [0.3, 0.3, 0.3]},
     "motion": {"period": 0.5, "angle_amplitude": 0.2, "ramp": 0.1, "axis": [0.0, 1.0, 0.0]},
 }
+PUSH = {"times": [0.0, 10.0], "displacement": [[0.0, 0.0, 0.0], [0.3, 0.0, 0.0]]}
+PUSHED = {
+    "method": "mdbc",
+    "walls": ROLLING["walls"],
+    "pistons": [{"part": "walls.x-", "motion": PUSH}],
+}
 MIRRORED = {
     "boundary": {"method": "mdbc", "lubrication_films": True},
     "density_diffusion": 0.1,
@@ -74,7 +80,7 @@ PLACES = np.array([[0.1, 0.1, -0.05], [0.15, 0.1, -0.05]])  # (2, 3) m, of the s
 
 
 def cases() -> tuple[ConformCase, ...]:
-    """Walls of either kind, both integrators, gauges, two dimensions, a tank that moves, waves."""
+    """Walls of either kind, both integrators, gauges, two dimensions, pistons, waves, flows."""
     twice = {**DROP, "integration": "symplectic"}
     box = {"shape": "box", "lowest": [0.0, 0.0, 0.0], "highest": [0.2, 1.0, 0.2]}
     slab = {**DROP, "dimensions": 2, "fluid": [box]}
@@ -87,6 +93,7 @@ def cases() -> tuple[ConformCase, ...]:
         _case("drop, symplectic, with gauges", {**twice, "gauges": GAUGES}),
         _case("drop in two dimensions", slab, volume=2.5e-3),
         ConformCase("drop in a tank that rolls", {**DROP, "boundary": ROLLING}, dt=1e-4),
+        ConformCase("drop beside a piston", {**DROP, "boundary": PUSHED}, dt=1e-4),
         _case("drop in a tank that repeats", turning | {"gauges": {"mass_gauge": True}}),
         ConformCase("channel with inflow and outflow", CHANNEL, dt=1e-4, still=False),
         ConformCase("flume with a wave maker", FLUME, dt=1e-4, still=False),

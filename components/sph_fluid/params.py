@@ -306,13 +306,7 @@ class SphFluidParams:
     def notes(self) -> tuple[str, ...]:
         """What a user should read of the mass of particles and of viscosity."""
         masses = mass_notes(self.fluid, self.spacing, self.dimensions)
-        return *masses, *self.viscosity.notes, *self._mesh_notes(), *self._piston_notes()
-
-    def _piston_notes(self) -> tuple[str, ...]:
-        if not self.boundary.pistons:
-            return ()
-        parts = ", ".join(piston.part for piston in self.boundary.pistons)
-        return (f"pictures leave out the boundary.pistons, as they move: {parts}.",)
+        return *masses, *self.viscosity.notes, *self._mesh_notes()
 
     def _mesh_notes(self) -> tuple[str, ...]:
         if not self.boundary.meshes:

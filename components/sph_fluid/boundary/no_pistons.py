@@ -28,6 +28,9 @@ class Pistons(Protocol):
     def forces_of_links(self, state: State) -> Array:
         """Forces (samples, 3) N on the samples that links bring."""
 
+    def faces(self) -> list[Array]:
+        """Corners (k, 3) m of their faces where they are now, for pictures."""
+
     def save(self) -> dict[str, Array]:
         """Copy out their clock, and their work."""
 
@@ -60,6 +63,10 @@ class NoPistons:
     def forces_of_links(self, state: State) -> Array:
         """All forces are on samples of links."""
         return state.force
+
+    def faces(self) -> list[Array]:
+        """None: there are no pistons."""
+        return []
 
     def save(self) -> dict[str, Array]:
         """Nothing to remember."""

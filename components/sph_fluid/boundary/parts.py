@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from quintet.components.shared.geometry.box_faces import box
 from quintet.components.sph_fluid.boundary.obstacles import (
     from_meshes,
     obstacle_mirrors,
@@ -10,6 +11,7 @@ from quintet.components.sph_fluid.boundary.obstacles import (
 )
 from quintet.components.sph_fluid.boundary.walls import wall_mirrors, wall_points
 from quintet.components.sph_fluid.params import SphFluidParams
+from quintet.components.sph_fluid.setup.geometry import FACES
 from quintet.components.sph_fluid.setup.pistons import Piston
 from quintet.components.sph_fluid.state import Array
 
@@ -44,6 +46,20 @@ def moving(params: SphFluidParams, piston: Piston) -> Points:
         boxes = [edge.solids[number]]
         return obstacle_points(params, boxes), obstacle_mirrors(params, boxes)
     return from_meshes(params, [edge.meshes[piston.number("meshes")]])
+
+
+def part_faces(params: SphFluidParams, piston: Piston) -> list[Array]:
+    """Corners (k, 3) m of the faces of a piston as it stands in the scene."""
+    edge = params.boundary
+    if piston.face and edge.tank:
+        return box(*edge.tank, [piston.face])
+    if (number := piston.number("obstacles")) >= 0:
+        sides = [face for face in FACES if params.dimensions == 3 or face[0] != "y"]
+        return box(*edge.solids[number], sides)
+    # Left out of scenes without boundaries from files.
+    from quintet.components.sph_fluid.setup.mesh_surfaces import placed
+
+    return list(placed(edge.meshes[piston.number("meshes")]).corner)
 
 
 def _behind(points: Array, face: str, params: SphFluidParams) -> NDArray[np.bool_]:

@@ -7,20 +7,20 @@ velocity over it, so that displacements add up. The force of a step on them time
 the work that the fluid does on them.
 """
 
-import math
 from collections.abc import Callable, Mapping
 from typing import Protocol
 
 import numpy as np
 
 from quintet.components.sph_fluid.boundary.method import BoundaryMethod
-from quintet.components.sph_fluid.boundary.parts import moving
+from quintet.components.sph_fluid.boundary.parts import moving, part_faces
 from quintet.components.sph_fluid.boundary.samples import Samples
 from quintet.components.sph_fluid.boundary.walls import wall_volume
 from quintet.components.sph_fluid.constants import constants
 from quintet.components.sph_fluid.kernels import write_pressure
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.ranks.method import Ranks
+from quintet.components.sph_fluid.setup.piston_ways import moved
 from quintet.components.sph_fluid.setup.trajectory import ROUNDING, Trajectory
 from quintet.components.sph_fluid.state import Array, State
 from quintet.interfaces.component import Fields
@@ -41,11 +41,12 @@ class Correction(Protocol):
 
 
 class Part:
-    """One piston: its particles and their images where the scene has them, and its trajectory."""
+    """One piston: its particles, their images and its faces in the scene, and its trajectory."""
 
     def __init__(self, params: SphFluidParams, number: int, correction: Correction | None) -> None:
         piston = params.boundary.pistons[number]
         self.points, self.images = moving(params, piston)  # (k, 3) m
+        self.faces = part_faces(params, piston)
         self.trajectory: Trajectory = piston.path.trajectory
         self.axis, self.point = piston.path.direction, np.array(piston.path.point)
         self.correction = correction
@@ -68,19 +69,10 @@ class Part:
     def at(self, points: Array, time: float) -> Array:
         """Places (k, 3) m of points (k, 3) m of it at a time [s]."""
         place = self.trajectory.at(time).place
-        angle = float(place[3])
         if self.correction is not None:
             added = self.added + (time - self.clock) * self.added_velocity
             return np.asarray(points + (place[:3] + added * self.correction.forward))
-        if angle == 0.0:
-            return points + place[:3]
-        arm = points - self.point
-        x, y, z = self.axis.tolist()
-        along = (arm[:, 0] * x + arm[:, 1] * y + arm[:, 2] * z)[:, np.newaxis] * self.axis
-        turned = (
-            along + math.cos(angle) * (arm - along) + math.sin(angle) * np.cross(self.axis, arm)
-        )
-        return np.asarray(self.point + place[:3] + turned)
+        return moved(points, place, self.axis, self.point)
 
 
 class MovingPistons:
@@ -170,6 +162,10 @@ class MovingPistons:
     def forces_of_links(self, state: State) -> Array:
         """Forces (samples, 3) N on the samples that links bring."""
         return state.force[: self.links]
+
+    def faces(self) -> list[Array]:
+        """Corners (k, 3) m of their faces where they are now."""
+        return [part.at(face, self.time) for part in self.parts for face in part.faces]
 
     def save(self) -> dict[str, Array]:
         """Copy out their clock, and their work."""

@@ -9,6 +9,7 @@ from quintet.components.shared.geometry.bounds import Bounds
 from quintet.components.sph_fluid.setup.boundary import Boundary
 from quintet.components.sph_fluid.setup.geometry import ROUNDING
 from quintet.components.sph_fluid.setup.motion_checks import is_along
+from quintet.components.sph_fluid.setup.piston_ways import meets, surface, surfaces_on_way
 from quintet.components.sph_fluid.setup.pistons import Piston
 from quintet.interfaces.component import Array
 
@@ -49,10 +50,12 @@ def check_pistons(boundary: Boundary, dimensions: int, spacing: float) -> None:
             _check_way(where, piston, boundary, _swept_by_face(piston, boundary), spacing)
         elif (box := piston.number("obstacles")) >= 0:
             _check_dry_faces(where, piston, boundary, box, spacing, dimensions)
-            if not piston.path.turns:
-                swept = _swept_by_box(piston, boundary.solids[box])
-                _check_way(where, piston, boundary, swept, spacing)
-                _check_inside(where, piston, boundary, swept, dimensions)
+        if not piston.face and (piston.path.turns or piston.number("meshes") >= 0):
+            _check_any_way(where, piston, boundary, spacing, dimensions)
+        elif not piston.face:
+            swept = _swept_by_box(piston, boundary.solids[piston.number("obstacles")])
+            _check_way(where, piston, boundary, swept, spacing)
+            _check_inside(where, piston, boundary, swept, dimensions)
     if boundary.method == "potential":
         raise ValueError(
             "boundary.pistons need boundary.method mdbc or dbc; found potential. Set method."
@@ -158,11 +161,7 @@ def _check_way(
         at_start = np.array(boundary.solids[obstacle]) if obstacle >= 0 else np.full((2, 3), np.nan)
         overlap = np.minimum(at_start[1], high) - np.maximum(at_start[0], low)
         if (shared > little).all(axis=1).any() and not (overlap > little).all():
-            raise ValueError(
-                f"{where}: {piston.part} must not go through boundary.obstacles[{number}], which "
-                "stands; found that they overlap on its way. Shorten the motion, or move one of "
-                "the two."
-            )
+            raise _in_the_way(where, piston, number)
     if piston.face and boundary.tank is not None:
         axis = "xyz".index(piston.face[0])
         length = boundary.tank[1][axis] - boundary.tank[0][axis]
@@ -172,6 +171,56 @@ def _check_way(
                 f"{where}: {piston.part} must stay before the opposite face, {length:g} m away; "
                 f"found a displacement of {travel:g} m. Shorten the motion."
             )
+
+
+def _in_the_way(where: str, piston: Piston, number: int) -> ValueError:
+    return ValueError(
+        f"{where}: {piston.part} must not go through boundary.obstacles[{number}], which stands; "
+        "found that they overlap on its way. Shorten the motion, or move one of the two."
+    )
+
+
+def _outside(where: str, piston: Piston, face: str) -> ValueError:
+    return ValueError(
+        f"{where}: {piston.part} must stay in the tank; found it beyond the wall {face} on its "
+        "way. Shorten the motion, or open the face."
+    )
+
+
+def _check_any_way(
+    where: str, piston: Piston, boundary: Boundary, spacing: float, dimensions: int
+) -> None:
+    """No obstacle that stands is in the way of what turns or is a mesh; it stays in the tank."""
+    moving = [other.number("obstacles") for other in boundary.pistons]
+    little = ROUNDING * spacing
+    standing = {
+        number: box
+        for number, box in enumerate(boundary.solids)
+        if number not in moving
+        and not meets(surface(piston, boundary), box, little)
+        and not _holds_middle(piston, boundary, box)
+    }
+    closed = boundary.closed_faces(dimensions) if boundary.tank else ()
+    for triangles in surfaces_on_way(piston, boundary, spacing):
+        for number, box in standing.items():
+            if meets(triangles, box, little):
+                raise _in_the_way(where, piston, number)
+        low, high = triangles.min(axis=(0, 1)), triangles.max(axis=(0, 1))
+        for face in closed:
+            assert boundary.tank is not None
+            axis, is_upper = "xyz".index(face[0]), face[1] == "+"
+            wall = boundary.tank[int(is_upper)][axis]
+            if low[axis] >= wall if is_upper else high[axis] <= wall:
+                raise _outside(where, piston, face)
+
+
+def _holds_middle(piston: Piston, boundary: Boundary, box: Bounds) -> bool:
+    """Whether an obstacle that stands is inside a box that moves, or the other way round."""
+    number = piston.number("obstacles")
+    if number < 0:
+        return False
+    ends = np.array([boundary.solids[number], box])
+    return bool((ends[:, 0].max(axis=0) < ends[:, 1].min(axis=0)).all())
 
 
 def _check_inside(
@@ -184,10 +233,7 @@ def _check_inside(
         wall = boundary.tank["-+".index(face[1])][axis]
         outside = swept[:, 1, axis] <= wall if face[1] == "-" else swept[:, 0, axis] >= wall
         if outside.any():
-            raise ValueError(
-                f"{where}: {piston.part} must stay in the tank; found it beyond the wall {face} "
-                "on its way. Shorten the motion, or open the face."
-            )
+            raise _outside(where, piston, face)
 
 
 def _check_dry_faces(

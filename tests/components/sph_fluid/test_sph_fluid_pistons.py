@@ -310,14 +310,71 @@ def test_a_part_that_rises_out_of_a_wall_has_particles_all_around(tmp_path, form
     assert particles(params) == SphFluid(params).items() + len(points)
 
 
-@pytest.mark.parametrize(("part", "count"), [("obstacles.0", 3), ("walls.x-", 6), ("walls.z-", 6)])
-def test_pictures_leave_out_what_moves_and_a_note_says_so(part, count):
-    fluid = SphFluid(fluid_params(**BASE | OBSTACLE | piston(part, STAY)))
-    assert len(fluid.walls()["cells"]) == count  # of three walls and four sides of a block
-    assert any(
-        f"pictures leave out the boundary.pistons, as they move: {part}." in note
-        for note in fluid.notes()
-    )
+@pytest.mark.parametrize(("part", "count"), [("obstacles.0", 4), ("walls.x-", 1)])
+def test_pictures_show_pistons_where_they_are(part, count):
+    tables = (OBSTACLE,) if part == "obstacles.0" else (WALL,)
+    still, fluid = fluid_with(*tables), fluid_with(*tables, piston(part, PUSH))
+    assert (fluid.walls_move, still.walls_move) == (True, False)
+    before = fluid.walls()
+    assert len(before["cells"]) == len(still.walls()["cells"])
+    assert np.abs(before["points"]).sum() == pytest.approx(np.abs(still.walls()["points"]).sum())
+    for _ in range(200):
+        fluid.step(5e-4)
+    after = fluid.walls()
+    assert np.array_equal(after["cells"], before["cells"])
+    shift = after["points"] - before["points"]
+    expected = np.zeros_like(shift)
+    expected[-4 * count :, 0] = 0.005  # at 0.1 s; pistons stand behind all others
+    assert shift == pytest.approx(expected, abs=1e-12)
+
+
+FREE = ((0.02, 0.0, 0.1), (0.06, 1.0, 0.4))
+HUNG = DRY | {"boundary.obstacles": [FREE, ((0.26, 0.0, 0.0), (0.3, 1.0, 0.4))]}
+
+
+def swing(angle, x=0.04):
+    return {
+        "times": [0.0, 1.0],
+        "angle": [0.0, angle],
+        "axis": [0.0, 1.0, 0.0],
+        "point": [x, 0.5, 0.4],
+    }
+
+
+@pytest.mark.parametrize(
+    ("motion", "match"),
+    [
+        (swing(-1.2), r"must not go through boundary.obstacles\[1\], which stands"),
+        (swing(-6.28), r"must not go through boundary.obstacles\[1\], which stands"),
+        (swing(3.14, 0.5), r"must stay in the tank; found it beyond the wall x\+ on its way"),
+        (swing(3.14, -0.1), "must stay in the tank; found it beyond the wall x- on its way"),
+    ],
+)
+def test_an_obstacle_that_turns_is_refused_where_something_is_in_its_way(motion, match):
+    fluid_params(**BASE | HUNG | piston("obstacles.0", swing(-0.7)))
+    with pytest.raises(ValidationError, match=match):
+        fluid_params(**BASE | HUNG | piston("obstacles.0", motion))
+
+
+@pytest.mark.parametrize(
+    ("way", "match"),
+    [
+        ([0.1, 0.0, 0.1], r"must not go through boundary.obstacles\[0\], which stands"),
+        ([-0.35, 0.0, 0.2], "must stay in the tank; found it beyond the wall x- on its way"),
+        ([0.1, 0.0, 0.35], ""),
+    ],
+)
+def test_a_mesh_is_refused_where_something_is_in_its_way(tmp_path, way, match):
+    settings = through_the_floor(tmp_path, "meshes")
+    settings |= {"fluid": [((0.0, 0.0, 0.0), (0.06, 0.6, 0.1))]}
+    settings |= {"boundary.obstacles": [((0.34, 0.2, 0.0), (0.38, 0.4, 0.2))]}
+    up = [0.0, 0.0, way[2]]
+    motion = {"times": [0.0, 1.0, 1.1, 2.0], "displacement": [[0.0, 0.0, 0.0], up, up, way]}
+    if not match:
+        fluid_params(**settings | piston("meshes.0", motion))
+        return
+    with pytest.raises(ValidationError, match=match):
+        fluid_params(**settings | piston("meshes.0", motion))
 
 
 def test_a_part_that_is_moved_twice_is_refused():
