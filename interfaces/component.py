@@ -162,6 +162,7 @@ class Component(ABC):
     shows: tuple[Field, ...] = ()  # fields of its view; the first is drawn if a scene names none
     gives_integrals: bool = False  # whether `give` returns integrals over the last step, not rates
     items_vary: bool = False  # whether it may come to have more items than it began with
+    walls_move: bool = False  # whether parts of `walls` move: then each view has them again
     ranks: bool = False  # whether it can own several MPI ranks
     patience: float = PATIENCE  # s, how long it may keep others waiting beyond three usual windows
     Params: Any = None  # its parameter class, where no manifest names one
@@ -317,6 +318,8 @@ class Component(ABC):
 
     def walls(self) -> Fields:
         """What stands still around it, for pictures: ``points`` and ``cells`` as in a view.
+
+        With `walls_move` some of it may move; points and cells keep their order and number.
 
         Optional ``support`` (cells,) tells which are walls, clamped faces of bodies and planes of
         symmetry, by the numbers of `interfaces.faces`; without it all are walls.

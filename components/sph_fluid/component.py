@@ -55,6 +55,7 @@ class SphFluid(Component):
         self.open_boundaries = features.open_boundaries(params)
         self.open_boundaries.start(self.state)
         self.items_vary = bool(params.boundary.inflow)
+        self.walls_move = bool(params.boundary.pistons)
         write_pressure(self.constants, self.state.position_density, self.state.velocity_pressure)
         self.all_ranks, self.symmetry = features.ranks(params, resources)
         self.frame = features.frame(params, self.all_ranks)
@@ -260,8 +261,8 @@ class SphFluid(Component):
         return judgement.warnings(self.state, self.params, mass, self.all_ranks)
 
     def walls(self) -> Fields:
-        """Return the tank's closed faces, and the obstacles in it."""
-        return polygons(wall_faces(self.params))
+        """Return the tank's closed faces, the obstacles in it, and pistons where they are now."""
+        return polygons([*wall_faces(self.params), *self.pistons.faces()])
 
     def items(self) -> int:
         """Fluid, wall and sample particles."""

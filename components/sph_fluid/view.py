@@ -22,10 +22,7 @@ def view(state: State) -> Fields:
 
 
 def wall_faces(params: SphFluidParams) -> list[Array]:
-    """Corners (k, 3) m of the tank's closed faces, and of faces of obstacles and of meshes.
-
-    Pistons, which do not stay there, are left out.
-    """
+    """Corners (k, 3) m of all closed faces of tank, obstacles and meshes, but those of pistons."""
     boundary = params.boundary
     moved = {piston.face for piston in boundary.pistons}
     closed = [face for face in params.closed_faces if face not in moved]

@@ -96,8 +96,9 @@ def draw_run(run: Path, out: Path, picture: Picture, title: str = "") -> Path:
         raise SceneError(f"run {run}: a picture needs a .vtkhdf file with steps, and a time.")
     instants, viewpoint = moments(files, picture.times), picture.viewpoint
     cut, views = turned_views(files, instants, picture)
-    still = [viewpoint.turned_wall(wall) for wall in walls(run)]
-    low, high = limits(views, still, picture.region and viewpoint.turned_box(picture.region))
+    stills = [[viewpoint.turned_wall(wall) for wall in walls(run, time)] for time in instants]
+    every = [wall for still in stills for wall in still]
+    low, high = limits(views, every, picture.region and viewpoint.turned_box(picture.region))
     wide, tall = high - low
     stretch = max(1.0, wide / tall * LOWEST)
     text = f"{title}\n{_said(picture, cut, stretch)}".strip()
@@ -105,7 +106,7 @@ def draw_run(run: Path, out: Path, picture: Picture, title: str = "") -> Path:
     scales = colour_scales(views, picture.ranges)
     sizes = diameters(views[0])
     extent = float((high - low).max())
-    for panel, time, view in zip(panels, instants, views, strict=True):
+    for panel, time, view, still in zip(panels, instants, views, stills, strict=True):
         panel.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect=stretch)
         for axis, name in zip((panel.xaxis, panel.yaxis), viewpoint.names, strict=True):
             fit(axis, name, "m", extent)
@@ -114,7 +115,7 @@ def draw_run(run: Path, out: Path, picture: Picture, title: str = "") -> Path:
         draw_walls(panel, still)
         draw_view(panel, view, scales, sizes)
     add_colour_bars(figure, panels, scales, views)
-    add_legend(figure, views[0], still)
+    add_legend(figure, views[0], stills[0])
     return save(figure, out)
 
 

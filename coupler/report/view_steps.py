@@ -60,12 +60,13 @@ class Still(NamedTuple):
     support: int = WALL  # one of those of `interfaces.faces`
 
 
-def walls(run: Path) -> list[Still]:
-    """All faces that stand still in a run."""
+def walls(run: Path, time: float = 0.0) -> list[Still]:
+    """All faces that stand still in a run, and those that move at the step next to a time [s]."""
     stills = []
     for path in sorted(Path(run).glob(f"*{WALLS}")):
-        if len(vtkhdf_reader.times(path)):
-            view = vtkhdf_reader.read_step(path, 0)[1]
+        times = vtkhdf_reader.times(path)
+        if len(times):
+            view = vtkhdf_reader.read_step(path, int(np.abs(times - time).argmin()))[1]
             faces = corners_of(view)
             kinds = view.get("support", np.full(len(faces), WALL)).astype(int).tolist()
             stills += [Still(*wall) for wall in zip(faces, kinds, strict=True)]

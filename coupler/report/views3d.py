@@ -76,7 +76,7 @@ def draw_3d(run: Path, out: Path, picture: Picture, view: str = "", title: str =
     plotter = pyvista.Plotter(off_screen=True, shape=(rows, columns), window_size=size)
     for place, (time, shown) in enumerate(zip(times, views, strict=True)):
         plotter.subplot(*divmod(place, columns))
-        _fill(plotter, shown, still, scales, bounds, views)
+        _fill(plotter, shown, walls(run, time), scales, bounds, views)
         _look(plotter, bounds, view)
         name = f"{title}\n" if title and not place else ""
         plotter.add_text(f"{name}t = {with_unit(time, 's')}", font_size=9, color="black")
@@ -129,7 +129,8 @@ def animate(
             plotter.open_movie(str(out), framerate=FRAMES_PER_SECOND)
         for time in times:
             plotter.clear()
-            _fill(plotter, _read(files, time, picture), still, scales, bounds, sample)
+            shown, around = _read(files, time, picture), walls(run, time)
+            _fill(plotter, shown, around, scales, bounds, sample)
             _look(plotter, bounds, view)
             name = f"{title}\n" if title else ""
             plotter.add_text(f"{name}t = {with_unit(time, 's')}", font_size=9, color="black")

@@ -90,12 +90,9 @@ class OutputWriter:
         self._progress: ProgressReport | None = None
         self._files: dict[str, VtkHdf] = {}
         self._shows = bool(scene.file.output.interval or scene.file.output.pictures)
-        # Components whose walls are written; those of a run that goes on stay as they are.
-        self._asked = {
-            name
-            for name in scene.components
-            if first is not None and (folder / walls_file(name)).is_file()
-        }
+        self._asked: set[str] = set()  # components whose walls were asked for
+        self._moving_walls: set[str] = set()  # components whose walls move: asked for again
+        self._wall_files: dict[str, VtkHdf] = {}  # of these
         self._began = 0.0  # s, simulated
 
     def plan(self, windows: Windows) -> None:
@@ -237,12 +234,15 @@ class OutputWriter:
         for name, component in coupling.components.items():
             # Again for pictures: planes without edges are shown where the bodies have come to.
             drawn = self._meets_picture(self._windows.now)
-            walls = self._shows and (name not in self._asked or drawn)
+            again = drawn or name in self._moving_walls
+            walls = self._shows and (name not in self._asked or again)
             answer = component.call("view", shown=self._shows, walls=walls)
             totals[name] = answer.header["totals"]
             if walls:
+                if answer.header.get("walls_move"):
+                    self._moving_walls.add(name)
+                self._write_walls(name, answer.fields, drawn)
                 self._asked.add(name)
-                self._write_walls(name, answer.fields)
             shown = {k: v for k, v in answer.fields.items() if not k.startswith(WALLS)}
             if "points" in shown:
                 units = answer.header["units"]
@@ -256,17 +256,35 @@ class OutputWriter:
             self._files[name] = file
         return file
 
-    def _write_walls(self, name: str, fields: Fields) -> None:
-        """Write what stands still around a component into a file of its own, with one step."""
+    def _write_walls(self, name: str, fields: Fields, drawn: bool) -> None:
+        """Write what stands still around a component into a file of its own, with one step.
+
+        Walls that move have a step for each view. Those that stand are written once, and again
+        for pictures; a run that goes on has them from before.
+        """
         walls = {k.removeprefix(WALLS): v for k, v in fields.items() if k.startswith(WALLS)}
-        if "points" in walls:
-            file = VtkHdf(self.folder / walls_file(name), scene=self.scene.headline)
+        path = self.folder / walls_file(name)
+        if "points" not in walls:
+            return
+        if name in self._moving_walls:
+            if name not in self._wall_files:
+                self._wall_files[name] = self._file_of_walls(path)
+            self._wall_files[name].append(self._windows.time, walls)
+        elif drawn or self.first is None or not path.is_file():
+            file = VtkHdf(path, scene=self.scene.headline)
             file.append(0.0, walls)
             file.close()
+
+    def _file_of_walls(self, path: Path) -> VtkHdf:
+        """Begin a file of walls that move, or go on with that of an earlier run."""
+        if self.first is not None and path.is_file():
+            return resume(path, self._began, None)
+        return VtkHdf(path, scene=self.scene.headline)
 
     def close(self) -> None:
         """Close all files, however the run ended."""
         with contextlib.ExitStack() as stack:  # all, even if one cannot be written
-            for closed in (*self._files.values(), self._recorder, self._progress):
+            files = (*self._files.values(), *self._wall_files.values())
+            for closed in (*files, self._recorder, self._progress):
                 if closed:
                     stack.callback(closed.close)

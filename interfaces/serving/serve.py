@@ -328,6 +328,7 @@ class Server:
             shown, header["units"] = look_at(self.component)
             fields |= shown
         if message.header.get("walls"):
+            header["walls_move"] = bool(self.component.walls_move)
             fields |= {f"walls.{key}": array for key, array in self.component.walls().items()}
         return header, fields
 
