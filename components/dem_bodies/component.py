@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from quintet.components.dem_bodies import MANIFEST, begin, build, diagnostics, features
+from quintet.components.dem_bodies import MANIFEST, begin, build, diagnostics, features, gauges
 from quintet.components.dem_bodies import state as rows
 from quintet.components.dem_bodies.diagnostics import ALLOWED_DEPTH, Accumulated
 from quintet.components.dem_bodies.params import DemBodiesParams
@@ -35,6 +35,7 @@ REACTION = "contact_load.force"
 # Of the port, in the order in which rows are copied out.
 MOTION = ("motion.position", "motion.velocity", "motion.orientation", "motion.angular_velocity")
 CONTACT_FIELDS = ("contact.force", "contact.torque")
+FRONT_FIELDS = ("front_gauge.position", "front_gauge.share")
 
 
 class DemBodies(Component):
@@ -151,7 +152,7 @@ class DemBodies(Component):
             diagnostics.check(self.state)
 
     def give(self, wanted: Keys) -> Fields:
-        """Copy out the motion of all bodies; if wanted, the loads of contacts in the last step."""
+        """Copy out the motion of all bodies, and what is wanted of contacts and of the front."""
         fields = dict[str, Array]()
         if not wanted.isdisjoint(CONTACT_FIELDS):
             self._begin()
@@ -162,6 +163,12 @@ class DemBodies(Component):
         if REACTION in wanted:
             reaction = self.faces.penalty.reaction if self.faces else np.zeros((0, 3))
             fields[REACTION] = reaction.copy()
+        if not wanted.isdisjoint(FRONT_FIELDS):
+            self._begin()
+            whole, balls = self.stepping.whole("motion", "centre"), self.stepping.pairs_of_all()
+            if self.stepping.answers:
+                axis = gauges.AXES.index(str(self.params.front_gauge))
+                fields |= gauges.front(*whole, balls, self.lists.bodies, axis)
         if not wanted.isdisjoint(MOTION):
             fields |= dict(zip(MOTION, self.stepping.motion(), strict=False))
         return {key: array for key, array in fields.items() if key in wanted}

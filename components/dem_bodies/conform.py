@@ -24,7 +24,7 @@ NONE = np.zeros((2, 3))
 def cases() -> tuple[ConformCase, ...]:
     """Boxes and spheres; contact forces wanted; two spheres that collide; two dimensions."""
     boxes, balls = _above_floor(BOX, 3.2), _above_floor(BALL, 3.15)
-    strike = {**balls, "contact_forces": True, "planes": []}
+    strike = {**balls, "contact_forces": True, "front_gauge": "z", "planes": []}
     first, second = (dict(body) for body in balls["bodies"])
     strike["bodies"] = [
         {**first, "velocity": [0.0, 0.0, 2.0], "angular_velocity": [3.0, 0.0, 0.0]},

@@ -203,9 +203,11 @@ class DemBodiesParams:
         Whether the loads of contacts on each body are given, as port `contact`.
     contact_with_faces
         Whether free spheres touch the faces of a partner's mesh (link contact).
+    front_gauge
+        Axis along which the front of the largest group of touching bodies is given [m].
     """
 
-    RENAMED: ClassVar = {"speed": "impact_speed", "step": "fixed_step"}
+    RENAMED: ClassVar = {"speed": "impact_speed", "step": "fixed_step", "front": "front_gauge"}
     bodies: Annotated[tuple[Body, ...], Field(min_length=1)]  # once checked, with all copies
     materials: dict[str, Material]
     planes: tuple[Plane, ...] = ()
@@ -218,6 +220,7 @@ class DemBodiesParams:
     fixed_step: Positive | None = None
     contact_forces: bool = False
     contact_with_faces: bool = False
+    front_gauge: Literal["x", "y", "z"] | None = None
 
     def __post_init__(self) -> None:
         """Refuse contradictions, and put every copy among the bodies."""
@@ -237,6 +240,11 @@ class DemBodiesParams:
         object.__setattr__(self, "bodies", Bodies(bodies))
         check_plane(self.placed, self.planes, self.gravity, self.dimensions)
         check_pairs(self.pairs)
+        if self.front_gauge == "y" and self.dimensions == 2:
+            raise ValueError(
+                "front_gauge must be x or z in two dimensions, where nothing moves along y; found "
+                "y. Choose another axis."
+            )
         if self.contact_with_faces:
             self._require_spheres()
         if starts_there():

@@ -11,6 +11,7 @@ from quintet.interfaces.errors import StepError
 from quintet.interfaces.params import read
 
 DIAMETER = 0.02  # m
+FRONT = {"front_gauge": "x"}
 WALLS = [[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]
 PLANES = [{"point": NOTHING, "normal": normal, "material": "a"} for normal in WALLS]
 
@@ -68,8 +69,8 @@ def state_elsewhere():
 
 SCENES = {
     "heap": lambda: heap(10, 10, 12),
-    "rolling": lambda: heap(9, 9, 13, rolling_friction=0.1) | {"contact_forces": True},
-    "boxes": with_boxes,
+    "rolling": lambda: heap(9, 9, 13, rolling_friction=0.1) | {"contact_forces": True, **FRONT},
+    "boxes": lambda: with_boxes() | FRONT,
     "begun": begun,
 }
 
