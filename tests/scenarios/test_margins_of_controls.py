@@ -18,6 +18,7 @@ NOT_RUN = {
     "dam_break_box",
     "water_on_plate",
     "block_on_slope",
+    "column_collapse",
     "elastic_gate",
     "al_ball_7400_glued",
     "dam_break_column",

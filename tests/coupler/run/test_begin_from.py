@@ -3,12 +3,11 @@
 import json
 from pathlib import Path
 
-import h5py
 import numpy as np
 import pytest
+from stages import is_the_end_of, rows, run, status, two_stages
 from started import write_scene
 
-from quintet.coupler.cli import main
 from quintet.coupler.files.states import hash_of, states_of
 from quintet.coupler.run import simulate
 from quintet.coupler.scene.read import load
@@ -17,45 +16,6 @@ from quintet.interfaces.errors import SceneError
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
 ZENOH = pytest.param("zenoh", marks=pytest.mark.zenoh)
-
-
-def status(*arguments):
-    with pytest.raises(SystemExit) as ended:
-        main([str(argument) for argument in arguments])
-    return ended.value.code
-
-
-def run(scene, out, *settings, transport="memory"):
-    """Run a scene with settings; return its folder."""
-    sets = [part for setting in settings for part in ("--set", setting)]
-    assert status("run", scene, "--transport", transport, "--out", out, *sets) in (0, 1)
-    return out
-
-
-def rows(folder):
-    """All recorded fields of a run, by their places in its recording."""
-    with h5py.File(folder / "recording.h5") as file:
-        return {
-            f"{name}/{key}": array[()]
-            for name, component in file["components"].items()
-            for key, array in component["fields"].items()
-        }
-
-
-def is_the_end_of(again, whole):
-    """Whether the fields of a run have the bits of the last rows of another."""
-    ends = {key: array[len(array) - len(rows(again)[key]) :] for key, array in rows(whole).items()}
-    assert ends.keys() == rows(again).keys() and ends
-    return all(np.array_equal(ends[key], array) for key, array in rows(again).items())
-
-
-def two_stages(scene, folder, half, *settings, transport="memory"):
-    """Run a scene once as a whole, and once in two stages; return whole and second stage."""
-    whole = run(scene, folder / "whole", *settings, f"end={2 * half}", f"output.states=[{half}]")
-    keep = ("output.states=[1e9]", f"end={half}")
-    run(scene, folder / "first", *settings, *keep, transport=transport)
-    begin = (f"end={half}", f'begin_from="{folder / "first"}"')
-    return whole, run(scene, folder / "again", *settings, *begin, transport=transport)
 
 
 @pytest.mark.parametrize("transport", ["memory", ZENOH])

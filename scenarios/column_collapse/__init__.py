@@ -1,0 +1,1 @@
+"""A column of spheres collapses: run-out, between sand and glass beads."""
