@@ -59,7 +59,8 @@ With `boundary.motion` the tank moves with all that stands in it, by a table or 
 fluid is computed in its frame, with gravity turned and the forces of inertia
 (`motion/moving_frame.py`). `boundary.pistons` are parts of it that move by themselves
 (`boundary/pistons.py`). With `waves` such a part is a paddle that makes waves, by theory of first
-or second order (`waves/theory.py`), and may absorb those that come back (`waves/absorption.py`);
+or second order (`setup/wave_theory.py`), and may absorb those that come back
+(`waves/absorption.py`);
 `boundary.damping` has zones in which waves end (`waves/damping.py`).
 
 A face of the tank named in `boundary.symmetry` has no walls and is a plane of symmetry: what is

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from quintet.components.sph_fluid.waves.theory import bound_amplitude, wave_number
+from quintet.components.sph_fluid.setup.wave_theory import bound_amplitude, wave_number
 from quintet.scenarios.wave_flume import theory
 
 Run = Callable[..., dict]

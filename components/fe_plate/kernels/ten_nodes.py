@@ -140,12 +140,12 @@ def take_from_nodes(work, first, count, target, out):  # type: ignore[no-untyped
 
 
 @njit(**FAST_LANEWISE)
-def weighed(work, row, k, corner, edges, own, others):  # type: ignore[no-untyped-def]
+def weighed(work, row, k, corner, edges, of_corner_node, others):  # type: ignore[no-untyped-def]
     """h_i = (4λ_i - 1) x_i + 4 Σ λ_j x_ij, of a corner and its three edges."""
     x = three(work, row + 3 * corner, k)
     a, b = three(work, row + 3 * edges[0], k), three(work, row + 3 * edges[1], k)
     c = three(work, row + 3 * edges[2], k)
-    share, p, q, r = 4.0 * own - 1.0, 4.0 * others[0], 4.0 * others[1], 4.0 * others[2]
+    share, p, q, r = 4.0 * of_corner_node - 1.0, 4.0 * others[0], 4.0 * others[1], 4.0 * others[2]
     return (
         share * x[0] + p * a[0] + q * b[0] + r * c[0],
         share * x[1] + p * a[1] + q * b[1] + r * c[1],
@@ -213,10 +213,10 @@ def plus(p, q):  # type: ignore[no-untyped-def]
 
 
 @njit(**FAST_LANEWISE)
-def of_corner(g, own):  # type: ignore[no-untyped-def]
+def of_corner(g, coordinate):  # type: ignore[no-untyped-def]
     """∇N ∇Nᵀ/(w θ) of a corner, ∇N = (4λ - 1) ∇λ."""
-    slope = 4.0 * own - 1.0
-    return squared(g, slope * slope * (CORNER_OWN if own > 0.5 else CORNER_REST))
+    slope = 4.0 * coordinate - 1.0
+    return squared(g, slope * slope * (CORNER_OWN if coordinate > 0.5 else CORNER_REST))
 
 
 @njit(**FAST_LANEWISE)

@@ -36,8 +36,8 @@ class Piston:
     def __post_init__(self) -> None:
         """Refuse names that are none, and parts with two motions."""
         if (self.motion is None) == (self.waves is None):
-            found = "neither" if self.motion is None else "both"
-            raise ValueError(f"a piston must have motion or waves; found {found}. Give one.")
+            motions = "neither" if self.motion is None else "both"
+            raise ValueError(f"a piston must have motion or waves; found {motions}. Give one.")
         if PART.fullmatch(self.part) is None:
             raise ValueError(
                 f"part must be one of walls.{', walls.'.join(FACES)}, or obstacles.N or meshes.N "

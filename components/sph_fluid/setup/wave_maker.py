@@ -11,8 +11,8 @@ from quintet.interfaces.component import Array
 from quintet.interfaces.params import Number, Positive, Vector, parameters
 
 if TYPE_CHECKING:
-    from quintet.components.sph_fluid.waves.paddle_motion import PaddleMotion
-    from quintet.components.sph_fluid.waves.theory import Paddle
+    from quintet.components.sph_fluid.setup.paddle_motion import PaddleMotion
+    from quintet.components.sph_fluid.setup.wave_theory import Paddle
 
 LEAST_PARTICLES = 4  # in the height of waves: fewer damp them within a few of their lengths
 LONGEST = 8.0 * math.pi**2 / 3.0  # H L²/h³ below which waves of second order have one crest
@@ -122,11 +122,11 @@ class Waves:
             "significant_height": self.significant_height,
             "peak_period": self.peak_period,
         }
-        given = [{k for k, v in keys.items() if v is not None} for keys in (regular, sea)]
-        if given not in ([set(regular), set()], [set(), set(sea)]):
+        keys_set = [{k for k, v in keys.items() if v is not None} for keys in (regular, sea)]
+        if keys_set not in ([set(regular), set()], [set(), set(sea)]):
             raise ValueError(
                 "waves must have height and period, or spectrum, significant_height and "
-                f"peak_period; found {', '.join(sorted(given[0] | given[1])) or 'none of them'}. "
+                f"peak_period; found {', '.join(sorted(keys_set[0] | keys_set[1])) or 'none of them'}. "
                 "Give all keys of one kind of waves."
             )
         if self.spectrum is not None and self.order == 2:
@@ -136,7 +136,7 @@ class Waves:
 
     def _check_height(self) -> None:
         # Left out of scenes without wave makers.
-        from quintet.components.sph_fluid.waves.theory import BREAKING, wave_number
+        from quintet.components.sph_fluid.setup.wave_theory import BREAKING, wave_number
 
         height, period = self.significant, self.longest_period
         length = 2.0 * math.pi / wave_number(2.0 * math.pi / period, self.depth, self.gravity)
@@ -175,7 +175,7 @@ class Waves:
     def water(self) -> "Paddle":
         """The paddle and the water, for the theory."""
         # Left out of scenes without wave makers.
-        from quintet.components.sph_fluid.waves.theory import Paddle
+        from quintet.components.sph_fluid.setup.wave_theory import Paddle
 
         hinge = None if self.hinge is None else self.level - self.hinge[2]
         return Paddle(self.depth, hinge, self.gravity)
@@ -221,9 +221,9 @@ class Waves:
 def _paddle_motion(waves: Waves) -> "PaddleMotion":
     """Motion of the paddle: each wave by the transfer function of its frequency."""
     # Left out of scenes without wave makers.
-    from quintet.components.sph_fluid.waves.paddle_motion import PaddleMotion
-    from quintet.components.sph_fluid.waves.spectra import components
-    from quintet.components.sph_fluid.waves.theory import second_order, transfer
+    from quintet.components.sph_fluid.setup.paddle_motion import PaddleMotion
+    from quintet.components.sph_fluid.setup.wave_spectra import components
+    from quintet.components.sph_fluid.setup.wave_theory import second_order, transfer
 
     paddle = waves.water
     if waves.height is not None:

@@ -1,1 +1,1 @@
-"""Waves on water of finite depth: theory, wave makers, absorption, damping zones."""
+"""Waves that end: paddles that absorb them, and damping zones."""

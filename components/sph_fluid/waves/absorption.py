@@ -20,8 +20,8 @@ from quintet.components.sph_fluid.constants import constants
 from quintet.components.sph_fluid.gauges.levels import Levels
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.ranks.method import Ranks
+from quintet.components.sph_fluid.setup.paddle_motion import ForeseenSurface
 from quintet.components.sph_fluid.state import Array, State
-from quintet.components.sph_fluid.waves.paddle_motion import ForeseenSurface
 from quintet.interfaces.errors import StepError
 
 ACROSS = 4.0  # smoothing lengths from spot to spot across the paddle

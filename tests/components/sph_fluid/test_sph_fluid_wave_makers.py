@@ -9,7 +9,7 @@ from pydantic import ValidationError
 
 from quintet.components.sph_fluid.component import SphFluid
 from quintet.components.sph_fluid.ranks.refusal import refuse_what_needs_one_rank
-from quintet.components.sph_fluid.waves.theory import transfer
+from quintet.components.sph_fluid.setup.wave_theory import transfer
 from quintet.interfaces.errors import SceneError, StepError
 
 SPACING = 0.02

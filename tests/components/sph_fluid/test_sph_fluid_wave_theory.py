@@ -5,9 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from quintet.components.sph_fluid.waves.paddle_motion import ForeseenSurface, PaddleMotion
-from quintet.components.sph_fluid.waves.spectra import components, jonswap
-from quintet.components.sph_fluid.waves.theory import (
+from quintet.components.sph_fluid.setup.paddle_motion import ForeseenSurface, PaddleMotion
+from quintet.components.sph_fluid.setup.wave_spectra import components, jonswap
+from quintet.components.sph_fluid.setup.wave_theory import (
     Paddle,
     bound_amplitude,
     modes,

@@ -58,10 +58,12 @@ class _Numbers:
         self.part_ids = np.union1d(self.part, np.array([*shells, *entries.titles], np.int64))
         # (e, 10), -1 where there is none; of tetrahedra their four or ten nodes come first
         solids = entries.solids
-        found = {number: tetrahedron_of(solid) for number, solid in solids.items()}
+        tetrahedra = {number: tetrahedron_of(solid) for number, solid in solids.items()}
         # (e,) nodes of tetrahedra, 0 of hexahedra
-        self.tetrahedra = np.array([len(nodes) for nodes in found.values()], np.int64)
-        chosen = {k: solid._replace(nodes=found[k] or solid.nodes) for k, solid in solids.items()}
+        self.tetrahedra = np.array([len(nodes) for nodes in tetrahedra.values()], np.int64)
+        chosen = {
+            k: solid._replace(nodes=tetrahedra[k] or solid.nodes) for k, solid in solids.items()
+        }
         self.corner = self._corners(chosen, 10)
 
     def _corners(self, elements: dict[int, Element], count: int) -> Whole:

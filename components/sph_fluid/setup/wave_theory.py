@@ -75,14 +75,14 @@ def wave_number(omega: float, depth: float, gravity: float) -> float:
 def modes(omega: float, paddle: Paddle, count: int = MODES) -> Array:
     """Wave numbers (1 + count,) 1/m, complex: the wave's, and -iκ of evanescent modes."""
     ratio = omega * omega * paddle.depth / paddle.gravity
-    found = [complex(wave_number(omega, paddle.depth, paddle.gravity))]
+    numbers = [complex(wave_number(omega, paddle.depth, paddle.gravity))]
     for j in range(1, count + 1):
         # -κh tan κh = ω²h/g has one root from (j - ½)π to jπ: κh = jπ - arctan(ratio / κh).
         y = j * math.pi
         for _ in range(ITERATIONS):
             y = j * math.pi - math.atan(ratio / y)
-        found.append(-1j * y / paddle.depth)
-    return np.array(found)
+        numbers.append(-1j * y / paddle.depth)
+    return np.array(numbers)
 
 
 def transfer(omega: float, paddle: Paddle, count: int = MODES) -> tuple[Array, Array]:
@@ -138,9 +138,9 @@ def second_order(amplitude: float, omega: float, paddle: Paddle) -> complex:
         moved = slope * rise + f * number * number * profile
         lacking += 0.5 * amplitude * phase * (test * moved).sum()
     both = k[:, np.newaxis] + k  # wave numbers of the waves forced by pairs of modes
-    own = k * k
+    squares = k * k
     forcing = 0.5j * omega * phi[:, np.newaxis] * phi
-    forcing *= 0.5 * (own[:, np.newaxis] + own) + 2.0 * k[:, np.newaxis] * k - 3.0 * nu * nu
+    forcing *= 0.5 * (squares[:, np.newaxis] + squares) + 2.0 * k[:, np.newaxis] * k - 3.0 * nu * nu
     level = both * np.tanh(both * h)
     bound = forcing / (g * level - 4.0 * omega * omega)
     # ∫ cosh K(z+h) cosh k(z+h) dz over both values at z = 0, with 4ω² = g k tanh kh.

@@ -6,7 +6,7 @@ import math
 import numpy as np
 
 from quintet.components.sph_fluid.setup.trajectory import Instant
-from quintet.components.sph_fluid.waves.theory import Paddle, bound_amplitude, transfer
+from quintet.components.sph_fluid.setup.wave_theory import Paddle, bound_amplitude, transfer
 from quintet.interfaces.component import Array
 
 SAMPLED = 500  # of the longest periods, that the course looks at
