@@ -126,7 +126,7 @@ class Waves:
         if keys_set not in ([set(regular), set()], [set(), set(sea)]):
             raise ValueError(
                 "waves must have height and period, or spectrum, significant_height and "
-                f"peak_period; found {', '.join(sorted(keys_set[0] | keys_set[1])) or 'none of them'}. "
+                f"peak_period; found {', '.join(sorted(set().union(*keys_set))) or 'none of them'}. "
                 "Give all keys of one kind of waves."
             )
         if self.spectrum is not None and self.order == 2:
