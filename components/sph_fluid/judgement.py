@@ -6,6 +6,8 @@ tank's walls, and kinetic energy that gravity does not bring, are signs of a ste
 or of walls that do not hold it.
 """
 
+import math
+
 import numpy as np
 
 from quintet.components.sph_fluid.params import SphFluidParams
@@ -29,8 +31,9 @@ LEAST_REYNOLDS = 50.0  # at 53 the front of a dam break is 8 % behind, at 30 13 
 LEAST_MACH = 1e-3  # of fluid without gravity: slower, it is at rest
 MOST_DAMPED = 0.1  # of a wave's amplitude, in a period
 # Decay of standing waves of 40 particles over that of Lamb: Wendland 0.95 at 1.5, 0.93 at 1.4,
-# 1.10 at 1.3, 1.55 at 1.2, 1.66 at 1; cubic spline 1.13 at 1.2, 1.39 at 1.3, 1.70 at 1.5.
-WAVE_KERNEL, LEAST_WAVE_SMOOTHING = "wendland", 1.4
+# 1.10 at 1.3, 1.55 at 1.2, 1.66 at 1; cubic spline 1.13 at 1.2, 1.39 at 1.3, 1.70 at 1.5; of 20
+# particles Wendland 0.95 and quintic spline 1.05 at 1.5.
+LEAST_WAVE_SMOOTHING = {"wendland": 1.4, "quintic": 1.5, "cubic": math.inf}
 TINY = 1e-300  # kg
 # Places in what is remembered.
 FIRST, LEAST, GAINED, KINETIC, COMPRESSED, LEAKED, JUDGED, HIGHEST, RELEASED, SHEARED = range(10)
@@ -188,13 +191,11 @@ def warnings(state: State, params: SphFluidParams, mass: float, ranks: Ranks) ->
             f"fluid that flows must be {LEAST_LAYERS} particles or more wide and deep at the "
             f"start; found {layers:.3g}. Refine the spacing."
         )
-    if params.wave is not None and (
-        params.kernel != WAVE_KERNEL or params.smoothing < LEAST_WAVE_SMOOTHING
-    ):
+    if params.wave is not None and params.smoothing < LEAST_WAVE_SMOOTHING[params.kernel]:
+        least = [f"{name} with {value:g}" for name, value in LEAST_WAVE_SMOOTHING.items()][:2]
         texts["smoothing"] = (
-            f"a wave needs the kernel {WAVE_KERNEL} with a smoothing of {LEAST_WAVE_SMOOTHING:g} "
-            f"or more, or it decays 10 % to 70 % too fast; found {params.kernel} and "
-            f"{params.smoothing:g}. Set them."
+            f"a wave needs kernel and smoothing {' or '.join(least)} or more, or it decays 10 % to "
+            f"70 % too fast; found {params.kernel} with {params.smoothing:g}. Set them."
         )
     ready = READY * held
     scale = max(float(judged[KINETIC]), ready)

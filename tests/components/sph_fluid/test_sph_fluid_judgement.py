@@ -134,7 +134,13 @@ def test_a_wave_on_few_particles_is_refused() -> None:
 
 @pytest.mark.parametrize(
     ("kernel", "smoothing", "warned"),
-    [("wendland", 1.5, False), ("wendland", 1.3, True), ("cubic", 1.5, True)],
+    [
+        ("wendland", 1.5, False),
+        ("wendland", 1.3, True),
+        ("cubic", 1.5, True),
+        ("quintic", 1.5, False),
+        ("quintic", 1.3, True),
+    ],
 )
 def test_kernels_that_damp_a_wave_are_warned_of(
     kernel: str, smoothing: float, warned: bool
