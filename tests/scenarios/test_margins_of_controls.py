@@ -31,7 +31,6 @@ NOT_RUN = {
     "shock_layer_oblique",
     "dam_break_cubes",
     "sloshing",
-    "wave_flume",
 }
 
 

@@ -21,11 +21,13 @@ SCENES = {
     "solid and elements, glued": ("glued_bar", None, 2.0**-20, STEADY),
     "bodies and elements in contact": ("sphere_on_plate", None, 2.0**-18),
 }
+ALONE = list(SCENES)[:6]
+COUPLED = [pytest.param(name, marks=pytest.mark.full) for name in list(SCENES)[6:]]
 ZENOH = pytest.param("zenoh", marks=pytest.mark.zenoh)
 MPI = pytest.param("mpi", marks=pytest.mark.mpi)
 
 
-@pytest.mark.parametrize("name", SCENES)
+@pytest.mark.parametrize("name", ALONE + COUPLED)
 def test_components_go_on_with_the_same_bits(tmp_path, name):
     scene, preset, half, *settings = SCENES[name]
     whole, again = two_stages(scene, tmp_path, half, *settings, preset=preset)
@@ -36,14 +38,6 @@ def test_components_go_on_with_the_same_bits(tmp_path, name):
 @pytest.mark.parametrize("transport", [ZENOH, MPI])
 @pytest.mark.parametrize("name", SCENES)
 def test_components_go_on_with_the_same_bits_in_processes(tmp_path, name, transport):
-    scene, preset, half, *settings = SCENES[name]
-    whole, again = two_stages(scene, tmp_path, half, *settings, transport=transport, preset=preset)
-    assert is_the_end_of(again, whole)
-
-
-@pytest.mark.parametrize("transport", [ZENOH, MPI])
-@pytest.mark.parametrize("name", ["particles of a solid", "lattice", "spheres"])
-def test_particles_go_on_with_the_same_bits_in_processes(tmp_path, name, transport):
     scene, preset, half, *settings = SCENES[name]
     whole, again = two_stages(scene, tmp_path, half, *settings, transport=transport, preset=preset)
     assert is_the_end_of(again, whole)
