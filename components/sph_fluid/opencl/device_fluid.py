@@ -1,7 +1,7 @@
 """The fluid as a component whose steps run on an OpenCL device.
 
-All but the steps is that of `SphFluid`, whose state the rows are copied into where it is read:
-gauges, totals, views, snapshots. Between these only four numbers a step leave the device.
+An `SphFluid` on the host makes the particles, and reads gauges, totals, views and snapshots: rows
+are copied into its state before. Between these a step sends four numbers from the device.
 """
 
 from dataclasses import replace
@@ -9,13 +9,20 @@ from dataclasses import replace
 from quintet.components.shared.opencl.devices import device_of
 from quintet.components.shared.search.verlet_list import slack
 from quintet.components.sph_fluid import MANIFEST, diagnostics, judgement
+from quintet.components.sph_fluid.boundary.no_pistons import NoPistons
+from quintet.components.sph_fluid.boundary.symmetry_planes import NoSymmetry
 from quintet.components.sph_fluid.component import LOADS, SphFluid
+from quintet.components.sph_fluid.integration.extrapolated import Extrapolated
 from quintet.components.sph_fluid.mass_balance.losses import refuse_many_lost
+from quintet.components.sph_fluid.motion.frame import StillFrame
+from quintet.components.sph_fluid.open_boundaries.method import NoOpenBoundaries
 from quintet.components.sph_fluid.opencl.refusal import refuse_what_needs_the_processor
 from quintet.components.sph_fluid.opencl.stepping import Stepping
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.ports import SHOWS
+from quintet.components.sph_fluid.ranks.one import OneRank
 from quintet.components.sph_fluid.setup.tait import TAIT
+from quintet.components.sph_fluid.waves.no_damping import NoDamping
 from quintet.interfaces.component import Component, Fields, Keys, Resources, Totals
 from quintet.interfaces.errors import SceneError
 
@@ -42,9 +49,27 @@ class DeviceFluid(Component):
             )
         self.params, (self.takes, self.gives) = params, self.ports_of(params)
         self.host = SphFluid(params, replace(resources, device="cpu"))
+        self._refuse_other_parts(resources.device)
         self.stepping = Stepping(params, device, resources.threads, self.host.lists.reach)
         self.skin = self.host.lists.reach - self.host.lists.cutoff
         self._put()
+
+    def _refuse_other_parts(self, device: str) -> None:
+        """Refuse parts of the host that its step would call: a device's step does not."""
+        host = self.host
+        pairs = (
+            (host.damping, NoDamping), (host.pistons, NoPistons), (host.symmetry, NoSymmetry),
+            (host.open_boundaries, NoOpenBoundaries), (host.frame, StillFrame),
+            (host.all_ranks, OneRank), (host.filter, type(None)),
+            (host.integration, Extrapolated),
+        )  # fmt: skip
+        others = [type(part).__name__ for part, expected in pairs if type(part) is not expected]
+        others += [type(p).__name__ for p in host.pressure_parts if p is not host.boundary]
+        if others:
+            raise SceneError(
+                f"on device {device}, a fluid must have no parts that the processor alone "
+                f'computes; found {", ".join(others)}. Set device = "cpu".'
+            )
 
     def describe(self) -> Fields:
         """Request how surfaces are to be sampled."""
@@ -54,7 +79,7 @@ class DeviceFluid(Component):
         """Refuse surfaces."""
         if "surface.volume" in static:
             raise SceneError(
-                "a fluid on a device must have no links to bodies yet; found samples of surfaces. "
+                "on a device, a fluid must have no links to bodies; found samples of surfaces. "
                 'Remove the links, or set device = "cpu".'
             )
 
@@ -77,7 +102,7 @@ class DeviceFluid(Component):
             totals = self.host.totals()
             judgement.note(state, self.params, totals, is_alone, self.host.all_ranks)
         extremes = self.stepping.step(state, dt)
-        self._is_read = self._is_listed = False
+        self._is_read = False
         if extremes.failed:
             self._get()
             raise diagnostics.failure(state, self.params, dt, self.host.all_ranks)

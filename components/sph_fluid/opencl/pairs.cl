@@ -1,8 +1,9 @@
 /* Accelerations and rates of density, summed over pairs; laws and structs are printed.
 
-   Neighbours are summed over LANES at a time, each lane by itself, and then the lanes in order.
-   Lanes beyond the end of a list have the particle itself, out of its own reach. Of what a scene
-   has not, nothing is compiled: DIFFUSION. */
+   LANES neighbours are summed at a time, each lane by itself, and the lanes are added in order at
+   the end. Where a list ends before its last lanes do, these have the particle itself, moved out of
+   its own reach. DIFFUSION is defined where a scene has it; WALL_VOLUME, a wall particle's volume
+   over that of a particle of the fluid, where they differ. */
 
 #if LANES == 4
 #define GATHERED(array, part) \
@@ -13,12 +14,21 @@
 #define ROWS const int j0 = NEAR(0), j1 = NEAR(1), j2 = NEAR(2), j3 = NEAR(3)
 #define BEYOND(x) \
     (k + 4 <= stop ? (reals)0 : (reals)(0, k + 1 < stop ? 0 : x, k + 2 < stop ? 0 : x, x))
-#else
+#elif LANES == 1
 #define GATHERED(array, part) array[j].part
 #define TOTAL(lanes) lanes
 #define GREATEST(lanes) lanes
 #define ROWS const int j = near[place + item_stride * k]
 #define BEYOND(x) 0
+#else
+#error "LANES must be 1 or 4"
+#endif
+
+#define AS_IT_IS(slope) slope
+#ifdef WALL_VOLUME
+#define OF_WALLS(slope) (slope * (real)WALL_VOLUME)
+#else
+#define OF_WALLS(slope) slope
 #endif
 
 /* Neighbours k to k + LANES of row i: what all sums need. */
@@ -32,11 +42,11 @@
     const reals r2 = dx * dx + dy * dy + dz * dz; \
     const reals dot = dx * (u.x - other.f0) + dy * (u.y - other.f1) + dz * (u.z - other.f2)
 
-#define FORCE(law, sum, terms) \
+#define FORCE(law, sum, terms, weighted) \
     const reals density = GATHERED(position, w); \
     const tuple_3v per = inverses(r2, more + density, constants); \
     const reals approach = dot * per.f1; \
-    const reals slope = gradient(r2, per.f0, constants.smoothing); \
+    const reals slope = weighted(gradient(r2, per.f0, constants.smoothing)); \
     const tuple_3v away = {dx, dy, dz}; \
     const reals pressures = u.w + GATHERED(velocity, w); \
     fastest = max_reals(fastest, fabs(approach)); \
@@ -82,7 +92,7 @@ __kernel void rates(
     reals density_rate = 0, fastest = 0;
     for (int k = 0; k < turn; k += LANES) {
         PAIR(turn);
-        FORCE(fluid_force, force, fluid);
+        FORCE(fluid_force, force, fluid, AS_IT_IS);
 #ifdef DIFFUSION
         const reals flux = diffusive_flux(density - r.w, dx, dy, dz, fluid.diffusion);
         density_rate -= flux * slope * (r2 * per.f1 * per.f2);
@@ -90,7 +100,7 @@ __kernel void rates(
     }
     for (int k = turn; k < last; k += LANES) {
         PAIR(last);
-        FORCE(boundary_force, push, boundary);
+        FORCE(boundary_force, push, boundary, OF_WALLS);
     }
     const real x = constants.mass * (TOTAL(force.f0) + TOTAL(push.f0)) + gravity.x;
     const real y = constants.mass * (TOTAL(force.f1) + TOTAL(push.f1)) + gravity.y;

@@ -46,8 +46,11 @@ def rows_program(law: PairLaw, precision: Precision) -> str:
     return "\n".join([program.text, *names, search, (HERE / "rows.cl").read_text()])
 
 
-def pairs_program(law: PairLaw, precision: Precision, lanes: int) -> str:
-    """Sums over pairs, of the terms of a pair law, in either precision."""
+def pairs_program(law: PairLaw, precision: Precision, lanes: int, wall_volume: float = 1.0) -> str:
+    """Sums over pairs, of the terms of a pair law, in either precision.
+
+    `wall_volume` is that of a wall particle over that of a particle of the fluid.
+    """
     program, constants = Program(precision, lanes), law.constants
     force = ((LANES,) * 3, (LANES,) * 3, (LANES,) * 3, (LANES,) * 3, *(LANES,) * 6)
     names = [
@@ -59,6 +62,8 @@ def pairs_program(law: PairLaw, precision: Precision, lanes: int) -> str:
         f"#define FluidTerms {program.struct(law.fluid)}",
         f"#define BoundaryTerms {program.struct(law.boundary)}",
     ]
+    if wall_volume != 1.0:
+        names.append(f"#define WALL_VOLUME {wall_volume!r}")
     if law.fluid.diffusion.on is not None:
         flux = (*(LANES,) * 4, law.fluid.diffusion)
         names += ["#define DIFFUSION", _named(program, "diffusive_flux", diffusive_flux, *flux)]

@@ -1,38 +1,56 @@
-"""What of a fluid cannot be computed on a device yet."""
+"""Checks that a device can compute all that a fluid's parameters ask for."""
 
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.interfaces.errors import SceneError
 
+# Every key of a fluid stands here, in `SUPPORTED`, or in the table of `mistakes`: a test sees to it
+# that one added later is not ignored in silence.
+SUPPORTED = frozenset(
+    """material spacing sound_speed fluid initial lost_limit remove_inside_bodies dimensions kernel
+    smoothing staggered density gravity density_diffusion negative_pressure precision courant gauges
+    wave viscosity.artificial viscosity.form boundary.walls boundary.open_faces
+    boundary.wall_velocity boundary.obstacles boundary.meshes boundary.wall_offset
+    boundary.sample_depth boundary.wall_viscosity_factor boundary.lubrication_films
+    boundary.roughness boundary.potential_stiffness boundary.potential_exponent""".split()
+)
+
 
 def refuse_what_needs_the_processor(params: SphFluidParams, device: str) -> None:
-    """Raise where a fluid on a device has a part that the processor alone computes.
+    """Refuse parameters that a device does not compute; pyopencl is not needed for it.
 
     Raises
     ------
     SceneError
-        With all the keys, and what to do.
+        With all keys at fault, the values found, and what to do.
     """
-    edge, kinematic = params.boundary, params.viscosity.kinematic
-    rubs = params.mirrored and kinematic > 0.0 and edge.wall_viscosity_factor > 0.0
-    wrong = {
-        "boundary.method": (edge.method, edge.method == "potential", "mdbc or dbc"),
-        "boundary.symmetry": (list(edge.symmetry), bool(edge.symmetry), "empty"),
-        "boundary.periodic": (list(edge.periodic), bool(edge.periodic), "empty"),
-        "boundary.inflow": (len(edge.inflow), bool(edge.inflow), "empty"),
-        "boundary.outflow": (len(edge.outflow), bool(edge.outflow), "empty"),
-        "boundary.motion": ("a motion", edge.motion is not None, "left out"),
-        "boundary.pistons": (len(edge.pistons), bool(edge.pistons), "empty"),
-        "viscosity.kinematic": (kinematic, rubs, "0 with mirrored walls that rub"),
-        "integration": (params.integration, params.integration != "extrapolated", "extrapolated"),
-        "xsph": (params.xsph, params.xsph > 0.0, "0"),
-        "shepard_every": (params.shepard_every, params.shepard_every > 0, "0"),
-        "acoustic_damper": (params.acoustic_damper, params.acoustic_damper > 0.0, "0"),
-    }
-    mistakes = [
-        f"{key} must be {right} of a fluid on the device {device}; found {value}. Change it, or "
-        'set device = "cpu".'
-        for key, (value, is_wrong, right) in wrong.items()
+    sentences = [
+        f"on device {device}, {key} must be {right}; found {value}. {remedy}, "
+        'or set device = "cpu".'
+        for key, (value, is_wrong, right, remedy) in limits(params).items()
         if is_wrong
     ]
-    if mistakes:
-        raise SceneError(mistakes)
+    if sentences:
+        raise SceneError(sentences)
+
+
+def limits(params: SphFluidParams) -> dict[str, tuple[object, bool, str, str]]:
+    """Keys that a device limits: the value, whether it is wrong, what is right, what to do."""
+    edge, kinematic = params.boundary, params.viscosity.kinematic
+    rubs = params.mirrored and kinematic > 0.0 and edge.wall_viscosity_factor > 0.0
+    lists = {
+        f"boundary.{name}": (len(getattr(edge, name)), bool(getattr(edge, name)), "empty")
+        for name in ("symmetry", "periodic", "inflow", "outflow", "pistons", "damping")
+    }
+    numbers = {
+        name: (getattr(params, name), getattr(params, name) > 0, "0")
+        for name in ("xsph", "shepard_every", "acoustic_damper")
+    }
+    changed = numbers | {
+        "boundary.motion": ("a motion", edge.motion is not None, "left out"),
+        "boundary.method": (edge.method, edge.method == "potential", "mdbc or dbc"),
+        "viscosity.kinematic": (kinematic, rubs, "0 with mirrored walls that rub"),
+        "integration": (params.integration, params.integration != "extrapolated", "extrapolated"),
+    }
+    return {key: (*limit, "Remove them") for key, limit in lists.items()} | {
+        key: (*limit, "Change it") for key, limit in changed.items()
+    }

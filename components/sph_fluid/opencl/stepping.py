@@ -14,6 +14,7 @@ from quintet.components.sph_fluid.constants import pair_law
 from quintet.components.sph_fluid.integration.extrapolated import AHEAD
 from quintet.components.sph_fluid.opencl.device_state import DeviceState
 from quintet.components.sph_fluid.opencl.programs import pairs_program, rows_program
+from quintet.components.sph_fluid.pairs.interaction import relative_wall_volume
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.state import State
 
@@ -21,7 +22,7 @@ LANES_OF_PROCESSORS = 4  # doubles in one of its vectors; other devices make lan
 
 
 class Extremes(NamedTuple):
-    """What a step tells of all rows."""
+    """Greatest values over the fluid's particles, which a step returns."""
 
     acceleration: float  # m/s2, largest
     approach: float  # 1/s, largest
@@ -48,7 +49,8 @@ class Stepping:
         law = pair_law(params)
         rows = build(self.queue, rows_program(law, self.precision))
         lanes = LANES_OF_PROCESSORS if device.is_processor else 1
-        pairs = build(self.queue, pairs_program(law, self.precision, lanes), self.precision)
+        text = pairs_program(law, self.precision, lanes, relative_wall_volume(params))
+        pairs = build(self.queue, text, self.precision)
         self._rates, self._advance, self._narrow = pairs.rates, rows.advance, rows.narrow
         self._extrapolate = rows.extrapolate_density
         self.rows = DeviceState(self.queue, rows, params, reach, device.is_processor)

@@ -115,13 +115,18 @@ def relative_volume(samples: Samples, state: State, params: SphFluidParams) -> A
     fluid's particles; as heavy as those they would displace more, or less, than the body does.
     The same holds of the walls of a fluid whose own edges it divides so badly that it matters.
     """
-    particle = params.particle_volume
-    share, wall = samples.volume / particle, wall_volume(params) / particle
-    if abs(wall - 1.0) < UNEVEN or particle == params.spacing**params.dimensions:
-        wall = 1.0
+    share, wall = samples.volume / params.particle_volume, relative_wall_volume(params)
     if np.abs(share - 1.0).max(initial=abs(wall - 1.0)) < EVEN:
         return np.zeros(0)
     volumes = np.ones(len(state.position_density))
     volumes[state.fluid : state.particles] = wall
     volumes[samples.row] = share[samples.number]
     return volumes
+
+
+def relative_wall_volume(params: SphFluidParams) -> float:
+    """Volume of a wall particle over that of one of the fluid; 1 if they hardly differ."""
+    particle = params.particle_volume
+    wall = wall_volume(params) / particle
+    is_even = abs(wall - 1.0) < UNEVEN or particle == params.spacing**params.dimensions
+    return 1.0 if is_even else wall

@@ -3,19 +3,29 @@
 import subprocess
 import sys
 from copy import deepcopy
+from dataclasses import fields
 
 import numpy as np
 import pytest
 from fluid_params import fluid_params
 
 from quintet.components.sph_fluid.component import SphFluid
+from quintet.components.sph_fluid.pairs.interaction import relative_wall_volume
+from quintet.components.sph_fluid.params import SphFluidParams
+from quintet.components.sph_fluid.setup.boundary import Boundary
+from quintet.components.sph_fluid.setup.viscosity import Viscosity
 from quintet.interfaces.component import Resources
 from quintet.interfaces.errors import SceneError
 
 pytest.importorskip("pyopencl")
 from quintet.components.shared.opencl.devices import Device
+from quintet.components.sph_fluid.opencl import device_fluid
 from quintet.components.sph_fluid.opencl.device_fluid import DeviceFluid
-from quintet.components.sph_fluid.opencl.refusal import refuse_what_needs_the_processor
+from quintet.components.sph_fluid.opencl.refusal import (
+    SUPPORTED,
+    limits,
+    refuse_what_needs_the_processor,
+)
 
 MIRRORED = {
     "spacing": 0.05,
@@ -84,6 +94,20 @@ def test_a_device_that_is_no_processor_gets_lists_by_columns_and_single_lanes(ta
     processor, device = advanced(SphFluid(params), 30), advanced(DeviceFluid(params, DEVICE), 30)
     assert not device.stepping.rows.cells.by_rows
     assert difference(processor, device, "points") < 1e-13
+
+
+UNEVEN = {
+    "fluid": [{"shape": "box", "lowest": [0.0, 0.0, 0.0], "highest": [0.27, 1.0, 0.37]}],
+}
+
+
+@pytest.mark.parametrize("changes", [{}, {"kernel": "quintic"}, {"precision": "float32"}])
+def test_walls_have_their_own_volume_where_the_spacing_does_not_divide_the_fluid(changes):
+    params = params_of(MIRRORED | UNEVEN | changes)
+    assert abs(relative_wall_volume(params) - 1.0) > 0.05
+    processor, device = advanced(SphFluid(params), 60), advanced(DeviceFluid(params, DEVICE), 60)
+    limit = 1e-4 if changes == {"precision": "float32"} else 2e-7
+    assert difference(processor, device, "velocity") < limit
 
 
 def test_a_device_without_double_precision_is_refused(monkeypatch):
@@ -168,16 +192,54 @@ REFUSED = {
 }
 
 
+FLUME = {
+    "fluid": [{"shape": "box", "lowest": [0.0, 0.0, 0.0], "highest": [2.0, 0.5, 0.5]}],
+    "boundary": {
+        "method": "dbc",
+        "walls": {"lowest": [0.0, 0.0, 0.0], "highest": [2.0, 0.5, 0.8]},
+        "damping": [{"lowest": [1.0, 0.0, 0.0], "highest": [2.0, 0.5, 0.8], "towards": "x+"}],
+    },
+}
+
+
+def test_damping_zones_are_refused_with_what_to_do():
+    params = params_of(DYNAMIC | FLUME)
+    with pytest.raises(SceneError) as caught:
+        refuse_what_needs_the_processor(params, "opencl:0")
+    assert str(caught.value) == (
+        "on device opencl:0, boundary.damping must be empty; found 1. Remove them, or set "
+        'device = "cpu".'
+    )
+
+
+def test_parts_of_the_host_that_no_key_tells_of_are_refused(monkeypatch):
+    monkeypatch.setattr(device_fluid, "refuse_what_needs_the_processor", lambda *_: None)
+    with pytest.raises(SceneError, match=r"on device opencl, .* found DampingZones\. Set device"):
+        DeviceFluid(params_of(DYNAMIC | FLUME), DEVICE)
+    with pytest.raises(SceneError, match=r"found PositionVerlet"):
+        DeviceFluid(params_of(DYNAMIC | {"integration": "symplectic"}), DEVICE)
+
+
+def test_every_key_of_a_fluid_is_supported_or_limited():
+    inner = {"boundary": Boundary, "viscosity": Viscosity}
+    keys = {each.name for each in fields(SphFluidParams)} - inner.keys()
+    keys |= {f"{name}.{each.name}" for name, table in inner.items() for each in fields(table)}
+    limited = limits(params_of(DYNAMIC)).keys()
+    assert keys == SUPPORTED | limited and not SUPPORTED & limited
+
+
 @pytest.mark.parametrize("key", REFUSED)
 def test_what_devices_cannot_compute_is_refused_by_name(key):
     params = params_of(DYNAMIC | REFUSED[key])
-    with pytest.raises(SceneError, match=rf'{key} must be .* found .*set device = "cpu"'):
+    with pytest.raises(
+        SceneError, match=rf'on device opencl, {key} must be .*; found .*set device = "cpu"'
+    ):
         refuse_what_needs_the_processor(params, "opencl")
 
 
 def test_links_to_bodies_are_refused():
     device = DeviceFluid(params_of(DYNAMIC), DEVICE)
-    with pytest.raises(SceneError, match=r"must have no links to bodies yet.*Remove the links"):
+    with pytest.raises(SceneError, match=r"must have no links to bodies.*Remove the links"):
         device.bind({"surface.volume": np.ones(2)}, frozenset({"surface"}))
 
 
