@@ -126,6 +126,7 @@ class Manifest:
     shows: tuple[Field, ...] = ()  # as of the component
     ranks: bool = False  # whether a component may own several MPI ranks
     opencl: str = ""  # "module:Class" of a component that computes on OpenCL devices
+    opencl_limits: str = ""  # "module:function" of parameters and device: refuses with SceneError
 
     def load(self, device: str = "cpu") -> type[Any]:
         """Import the solver itself, for a device; only the process that runs it does so."""
@@ -139,6 +140,11 @@ class Manifest:
         if not (isinstance(cls, type) and issubclass(cls, Component)):
             raise SceneError(f"kind {self.kind}: {path} is not a Component.")
         return cls
+
+    def check_device(self, params: Any, device: str) -> None:
+        """Refuse checked parameters that the component for a device cannot compute."""
+        if device != "cpu" and self.opencl_limits:
+            resolve(self.opencl_limits)(params, device)
 
     def cases(self) -> tuple[BenchCase, ...]:
         """Benchmarks of this kind, none if it declares none."""

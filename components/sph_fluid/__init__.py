@@ -110,4 +110,5 @@ MANIFEST = Manifest(
     shows=SHOWS,
     ranks=True,
     opencl="quintet.components.sph_fluid.opencl.device_fluid:DeviceFluid",
+    opencl_limits="quintet.components.sph_fluid.opencl.refusal:refuse_what_needs_the_processor",
 )

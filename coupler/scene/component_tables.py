@@ -170,6 +170,7 @@ def _component(
         if wrong:
             mistakes += wrong
             return None
+        manifest.check_device(params, common.device)
         with np.errstate(over="raise", divide="raise", invalid="raise"):
             takes, gives = manifest.ports(params)
             plan = manifest.plan(params) if manifest.plan else None

@@ -5,12 +5,18 @@ import sys
 from collections.abc import Sequence
 from typing import Any
 
-from quintet.components.shared.opencl.devices import NO_DEVICE, bandwidth, devices
+from quintet.components.shared.opencl.devices import (
+    NO_DEVICE,
+    Device,
+    bandwidth,
+    devices,
+    opencl,
+)
 from quintet.interfaces.errors import QuintetError, SceneError
 
 
 def main(arguments: Sequence[str] = ()) -> int:
-    """Print the devices; status 2 where there are none."""
+    """Print the devices; status 2 where there are none that work."""
     try:
         known = devices()
         if not known:
@@ -18,17 +24,12 @@ def main(arguments: Sequence[str] = ()) -> int:
     except QuintetError as error:
         print(error, file=sys.stderr)
         return 2
-    rows: list[dict[str, Any]] = [
-        {
-            "device": f"opencl:{device.number}",
-            "name": device.name,
-            "units": device.units,
-            "memory": device.memory,  # bytes
-            "doubles": device.has_doubles,
-            "bandwidth": bandwidth(device),  # bytes/s
-        }
-        for device in known
-    ]
+    rows: list[dict[str, Any]] = []
+    for device in known:
+        try:
+            rows.append(row_of(device))
+        except (opencl().Error, QuintetError) as error:  # others may work
+            print(f"opencl:{device.number} cannot be used: {error}", file=sys.stderr)
     if "--json" in arguments:
         print(json.dumps(rows, indent=1))
         return 0
@@ -39,7 +40,19 @@ def main(arguments: Sequence[str] = ()) -> int:
             f"    {row['units']} compute units, {row['memory'] / 2**30:.1f} GiB, {doubles}, "
             f"copies {row['bandwidth'] / 1e9:.1f} GB/s"
         )
-    return 0
+    return 0 if rows else 2
+
+
+def row_of(device: Device) -> dict[str, Any]:
+    """What is listed of a device; its bandwidth is measured."""
+    return {
+        "device": f"opencl:{device.number}",
+        "name": device.name,
+        "units": device.units,
+        "memory": device.memory,  # bytes
+        "doubles": device.has_doubles,
+        "bandwidth": bandwidth(device),  # bytes/s
+    }
 
 
 if __name__ == "__main__":

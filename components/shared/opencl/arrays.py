@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
 from quintet.components.shared.opencl.devices import opencl
+from quintet.interfaces.errors import SceneError, StepError
 
 GROUP = 64  # work items that a device runs together
 
@@ -24,7 +25,13 @@ class DeviceArray:
         self.queue, self.shape, self.dtype = queue, shape, np.dtype(dtype)
         cl = opencl()
         size = max(int(np.prod(shape)) * self.dtype.itemsize, self.dtype.itemsize)
-        self.memory = cl.Buffer(queue.context, cl.mem_flags.READ_WRITE, size=size)
+        largest = int(queue.device.max_mem_alloc_size)
+        if size > largest:
+            raise SceneError(too_large(queue.device, size, largest))
+        try:
+            self.memory = cl.Buffer(queue.context, cl.mem_flags.READ_WRITE, size=size)
+        except (cl.MemoryError, cl.RuntimeError) as error:
+            raise SceneError(too_large(queue.device, size, largest)) from error
 
     @classmethod
     def of(cls, queue: Any, array: NDArray[Any]) -> "DeviceArray":
@@ -47,11 +54,29 @@ class DeviceArray:
         return array
 
 
+def too_large(device: Any, size: int, largest: int) -> str:
+    """Sentence about an array of so many bytes, of which a device has no room."""
+    return (
+        f"device {device.name.strip()}: an array must have at most {largest} bytes, and all of "
+        f"them {device.global_mem_size}; found one of {size} bytes that has no room. Choose a "
+        'larger spacing, another device, or device = "cpu".'
+    )
+
+
 def run(queue: Any, kernel: Any, rows: int, *arguments: Any) -> None:
     """Run a kernel for at least so many rows; it must pass over those beyond them."""
     if rows:
         items = -(-rows // GROUP) * GROUP
-        kernel(queue, (items,), (GROUP,), *(_plain(each) for each in arguments))
+        try:
+            kernel(queue, (items,), (GROUP,), *(_plain(each) for each in arguments))
+        except opencl().MemoryError as error:  # drivers may make room when it is first used
+            sizes = (each.memory.size for each in arguments if isinstance(each, DeviceArray))
+            raise StepError(
+                f"device {queue.device.name.strip()}: what it computes with must fit into its "
+                f"memory of {queue.device.global_mem_size} bytes; found no room for "
+                f"{sum(sizes)} bytes beside the rest. Choose a larger spacing, another device, or "
+                'device = "cpu".'
+            ) from error
 
 
 def _plain(argument: Any) -> Any:

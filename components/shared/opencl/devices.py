@@ -4,6 +4,7 @@ pyopencl is loaded where a device is first asked for, and by nothing else.
 """
 
 import importlib
+import re
 import time
 import warnings
 from dataclasses import dataclass
@@ -19,6 +20,7 @@ NO_DEVICE = (
     "no OpenCL device was found. Install the driver of yours (its file .icd belongs into "
     "/etc/OpenCL/vendors), or PoCL, which computes on the processor: pip install 'quintet[opencl]'."
 )
+NAME = re.compile(r"opencl(?::(\d{1,4}))?")
 COPIED = 1 << 26  # floats in the test of bandwidth, 268 MB; fewer where memory is short
 ROUNDS = 5
 COPY = """
@@ -51,7 +53,7 @@ class Device:
 
     @property
     def name(self) -> str:
-        """As its driver calls it, with the platform and its version."""
+        """Name of the device, and of its platform with the version, as the driver states them."""
         platform = self.handle.platform
         return f"{self.handle.name.strip()} ({platform.name.strip()}, {platform.version.strip()})"
 
@@ -106,18 +108,23 @@ def device_of(name: str) -> Device:
     Raises
     ------
     SceneError
-        If pyopencl is not installed, or there is no such device.
+        If the name has another form, pyopencl is not installed, or there is no such device.
     """
-    _, _, number = name.partition(":")
-    known = devices()
+    form = NAME.fullmatch(name)
+    if not form:
+        raise SceneError(
+            f"device must be cpu, opencl, or opencl:0 and so on; found {name!r}. "
+            "`quintet devices` lists the devices of this machine."
+        )
+    number, known = int(form[1] or 0), devices()
     if not known:
         raise SceneError(f"device {name}: {NO_DEVICE}")
-    if int(number or 0) >= len(known):
+    if number >= len(known):
         raise SceneError(
             f"device {name}: there must be one of this number; found {len(known)}, from opencl:0 "
             "on. `quintet devices` lists them."
         )
-    return known[int(number or 0)]
+    return known[number]
 
 
 def build(queue: Any, text: str, precision: Precision = "double") -> Any:

@@ -80,5 +80,5 @@ def power_function(kind: str, exponent: int) -> str:
 
 
 def power_name(kind: str, exponent: int) -> str:
-    """Of that function."""
+    """Name of the function that `power_function` prints."""
     return f"power_{kind}_{'minus_' if exponent < 0 else ''}{abs(exponent)}"

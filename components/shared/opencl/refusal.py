@@ -1,4 +1,4 @@
-"""What cannot be printed: the place, the construct, and what to do."""
+"""The error of a law that cannot be printed: it names the place, the construct, what to do."""
 
 import ast
 from pathlib import Path

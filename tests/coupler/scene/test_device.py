@@ -4,6 +4,7 @@ import importlib.util
 import json
 import subprocess
 import sys
+from dataclasses import replace
 
 import pytest
 
@@ -12,7 +13,7 @@ from quintet.components.shared.opencl.devices import NO_DEVICE, bandwidth, devic
 from quintet.coupler.launch.acceptance import settings
 from quintet.coupler.scene.read import load
 from quintet.interfaces import libraries
-from quintet.interfaces.errors import OrderError, SceneError
+from quintet.interfaces.errors import OrderError, SceneError, StepError
 from quintet.interfaces.manifest import find
 from quintet.interfaces.serving.orders import check_order
 
@@ -92,6 +93,53 @@ def test_bandwidth_is_measured(monkeypatch):
     monkeypatch.setattr("quintet.components.shared.opencl.devices.COPIED", 1 << 20)
     device = device_of("opencl")
     assert 1e7 < bandwidth(device) < 1e14
+
+
+@pytest.mark.parametrize("name", ["gpu", "opencl:x", "opencl:-1", "OPENCL", ""])
+def test_a_device_of_another_name_is_refused_where_it_is_resolved(name):
+    with pytest.raises(SceneError, match=rf"must be cpu, opencl, or opencl:0.*found '{name}'"):
+        device_of(name)
+
+
+def test_check_refuses_what_the_run_on_a_device_would():
+    with pytest.raises(SceneError, match=r"water.*on device opencl, xsph must be 0; found 0.5"):
+        scene("still_water", "water", "opencl", xsph=0.5)
+
+
+@pytest.mark.skipif(not importlib.util.find_spec("pyopencl"), reason="needs pyopencl")
+def test_a_device_that_fails_does_not_hide_the_others(monkeypatch, capsys):
+    (first, *_) = listing.devices()
+    monkeypatch.setattr(listing, "devices", lambda: [first, replace(first, number=7)])
+
+    def bandwidth_of(device):
+        if device.number != 7:
+            raise listing.opencl().LogicError("no context")
+        return 1e9
+
+    monkeypatch.setattr(listing, "bandwidth", bandwidth_of)
+    assert listing.main() == 0
+    said = capsys.readouterr()
+    assert "opencl:0 cannot be used: " in said.err and said.out.startswith("opencl:7  ")
+
+
+@pytest.mark.skipif(not importlib.util.find_spec("pyopencl"), reason="needs pyopencl")
+def test_an_array_that_has_no_room_tells_bytes_and_limit():
+    from quintet.components.shared.opencl.arrays import DeviceArray
+
+    with pytest.raises(SceneError, match=r"at most \d+ bytes.*found one of 8000000000000000 bytes"):
+        DeviceArray(device_of("opencl").queue(), (10**15,))
+
+
+@pytest.mark.skipif(not importlib.util.find_spec("pyopencl"), reason="needs pyopencl")
+def test_a_kernel_that_finds_no_room_says_how_much_it_needs():
+    from quintet.components.shared.opencl.arrays import DeviceArray, run
+
+    def kernel(*_):
+        raise listing.opencl().MemoryError("no room")
+
+    queue = device_of("opencl").queue()
+    with pytest.raises(StepError, match=r"memory of \d+ bytes; found no room for 80 bytes"):
+        run(queue, kernel, 10, DeviceArray(queue, (10,)))
 
 
 def test_reading_a_scene_loads_no_opencl():
