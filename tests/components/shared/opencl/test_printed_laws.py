@@ -7,6 +7,7 @@ The exceptions call transcendental functions, which PoCL rounds otherwise than t
 import importlib
 import inspect
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -20,7 +21,7 @@ from quintet.components.meshless_gas.laws import fluxes, limiters, transport
 from quintet.components.particle_dynamics import laws as lattice
 from quintet.components.particle_dynamics.coefficients import PairDamping, SevenRoots
 from quintet.components.particle_dynamics.spheres import laws as spheres
-from quintet.components.shared import elementary, rotations
+from quintet.components.shared import elementary, rotations, smoothing
 from quintet.components.shared.contact import laws as contact
 from quintet.components.shared.materials import equation_of_state as state
 from quintet.components.shared.materials import fracture, strength
@@ -28,7 +29,7 @@ from quintet.components.shared.materials.solid import Solid
 from quintet.components.shared.opencl.program import Program
 from quintet.components.shared.opencl.refusal import PrintError
 from quintet.components.shared.search.cells import Grid, cell_of
-from quintet.components.shared.smoothing import cubic_spline, wendland
+from quintet.components.shared.smoothing import cubic_spline, quintic_spline, wendland
 from quintet.components.shared.smoothing import smoothing as smooth
 from quintet.components.sph_fluid import laws as fluid
 from quintet.components.sph_fluid.boundary.kernels import mirrored_density as mirrored
@@ -38,7 +39,7 @@ from quintet.components.sph_solid import laws as solid
 ANY, PART, LARGE = Between(-1.0, 1.0), Between(0.01, 1.0), Between(0.5, 2.0)
 SIX, NINE, TEN = (ANY,) * 6, (ANY,) * 9, (PART,) * 10
 NEAR = Between(0.0, 5e-3)  # m2
-CUBIC, WENDLAND = (smooth.smoothing(name, 3, 0.03) for name in smooth.KERNELS)
+CUBIC, QUINTIC, WENDLAND = (smooth.smoothing(name, 3, 0.03) for name in smooth.KERNELS)
 DENSITY = Between(900.0, 1100.0)
 CONSTANTS = fluid.Constants(0.008, CUBIC, 9e-6, 1000.0, 1e6, 0.0, 0.0)
 CALM = CONSTANTS._replace(smoothing=WENDLAND, lowest=-np.inf)
@@ -72,11 +73,16 @@ TOUCHING = (
 LAWS = [
     Law(cubic_spline.shape, (Between(0.0, 2.5),)),
     Law(cubic_spline.slope, (Between(0.0, 2.5),)),
+    Law(quintic_spline.pieces, (Between(0.0, 2.5),)),
+    Law(quintic_spline.shape, (Between(0.0, 2.5),)),
+    Law(quintic_spline.slope, (Between(0.0, 2.5),)),
     Law(wendland.shape, (Between(0.0, 2.5),)),
     Law(wendland.slope, (Between(0.0, 2.5),)),
     Law(smooth.kernel, (NEAR, CUBIC)),
     Law(smooth.gradient, (NEAR, LARGE, WENDLAND)),
     Law(smooth.gradient, (NEAR, LARGE, CUBIC), name=" of the cubic spline"),
+    Law(smooth.kernel, (NEAR, QUINTIC), name=" of the quintic spline"),
+    Law(smooth.gradient, (NEAR, LARGE, QUINTIC), name=" of the quintic spline"),
     Law(smooth.with_length, (CUBIC, PART, 3)),
     Law(fluid.tait, (DENSITY, CONSTANTS)),
     Law(fluid.tait, (DENSITY, CALM), name=" below zero"),
@@ -161,11 +167,17 @@ LAWS = [
     Law(transport.sutherland, (Between(100.0, 2000.0), GAS)),
 ]  # fmt: skip
 MODULES = {inspect.getmodule(getattr(law.function, "py_func", law.function)) for law in LAWS}
-LAW_FILES = [each for each in MODULES if each.__name__.split(".")[-1] == "laws"]
+SMOOTHING = {
+    importlib.import_module(f"{smoothing.__name__}.{path.stem}")
+    for path in Path(next(iter(smoothing.__path__))).glob("[!_]*.py")
+}
+LAW_FILES = SMOOTHING | {each for each in MODULES if each.__name__.split(".")[-1] == "laws"}
 # Laws that cannot be printed, and why: they read or write arrays, or choose a law by its type.
 NOT_PURE = {
     "change_stiffness", "friction", "force_over_distance", "pair_energy", "damping_weight",
     "force", "energy",
+    # Called once, on the host.
+    "normalisation", "smoothing",
 }  # fmt: skip
 
 
