@@ -1,4 +1,4 @@
-/* Points sorted by cell, and lists of neighbours; Grid and cells_cell_of are printed. */
+/* Points sorted by cell, and lists of neighbours; Grid and cell_of name what is printed. */
 
 #define ROW 0xffffffffL /* of a key: the row that a point had; above it stands its cell */
 
@@ -13,8 +13,7 @@ __kernel void number_rows(
     }
     const double4 r = position[first + k];
     const double along[3] = {r.x, r.y, r.z};
-    const long cell =
-        cells_cell_of(along[grid.first], along[grid.second], along[grid.third], grid);
+    const long cell = cell_of(along[grid.first], along[grid.second], along[grid.third], grid);
     key[k] = (cell << 32) | (first + k);
 }
 
@@ -88,8 +87,7 @@ __kernel void search(
     double4 r = position[i];
     if (i >= split && look) r.xyz = vload3(i - split, look);
     const double along[3] = {r.x, r.y, r.z};
-    const long cell =
-        cells_cell_of(along[grid.first], along[grid.second], along[grid.third], grid);
+    const long cell = cell_of(along[grid.first], along[grid.second], along[grid.third], grid);
     int found = 0;
     middle[i] = 0;
     if (cell < grid.nx * grid.ny * grid.nz) {

@@ -23,8 +23,10 @@ FEWEST = 32  # neighbours that lists have room for at first
 
 def source(program: Program) -> str:
     """Print the laws of cells; return the kernels."""
-    program.add(cell_of, 0.0, 0.0, 0.0, GRID)
-    return f"#define REACH {REACH}\n{SOURCE.read_text()}"
+    name, _ = program.add(cell_of, 0.0, 0.0, 0.0, GRID)
+    names = {"REACH": REACH, "cell_of": name, "Grid": program.struct(GRID)}
+    defined = "\n".join(f"#define {each} {meaning}" for each, meaning in names.items())
+    return f"{defined}\n{SOURCE.read_text()}"
 
 
 class NearLists(NamedTuple):

@@ -6,6 +6,7 @@ import types as python_types
 from typing import Any, Protocol
 
 from quintet.components.shared.opencl.calls import ONE_LANE, PASS_NUMBERS, c_name, intrinsic
+from quintet.components.shared.opencl.functions import ARITHMETIC, BITWISE, COMPARED, ROUNDED_DOWN
 from quintet.components.shared.opencl.names import identifier
 from quintet.components.shared.opencl.prelude import Precision, power_name
 from quintet.components.shared.opencl.refusal import Place, PrintError
@@ -22,15 +23,6 @@ from quintet.components.shared.opencl.types import (
     unified,
 )
 from quintet.components.shared.opencl.values import Value, converted, literal, row, struct_of
-
-ARITHMETIC: dict[type[ast.operator], str] = {ast.Add: "+", ast.Sub: "-", ast.Mult: "*"}
-BITWISE: dict[type[ast.operator], str] = {
-    ast.LShift: "<<", ast.RShift: ">>", ast.BitAnd: "&", ast.BitOr: "|", ast.BitXor: "^",
-}  # fmt: skip
-ROUNDED_DOWN: dict[type[ast.operator], str] = {ast.FloorDiv: "floor_divide", ast.Mod: "modulo"}
-COMPARED: dict[type[ast.cmpop], str] = {
-    ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">=", ast.Eq: "==", ast.NotEq: "!=",
-}  # fmt: skip
 
 
 class Printer(Protocol):

@@ -1,5 +1,6 @@
 """Functions of Python, numpy and mathematics that are printed by their names in OpenCL C."""
 
+import ast
 import math
 from typing import Any
 
@@ -42,3 +43,11 @@ BITS = frozenset({bits_of, number_of})  # in double precision alone: they know w
 TO_REAL = frozenset({float, np.float64})
 TO_INT = frozenset({int, np.int64})
 EXTREMES = {min: "min", max: "max"}
+ARITHMETIC: dict[type[ast.operator], str] = {ast.Add: "+", ast.Sub: "-", ast.Mult: "*"}
+BITWISE: dict[type[ast.operator], str] = {
+    ast.LShift: "<<", ast.RShift: ">>", ast.BitAnd: "&", ast.BitOr: "|", ast.BitXor: "^",
+}  # fmt: skip
+ROUNDED_DOWN: dict[type[ast.operator], str] = {ast.FloorDiv: "floor_divide", ast.Mod: "modulo"}
+COMPARED: dict[type[ast.cmpop], str] = {
+    ast.Lt: "<", ast.LtE: "<=", ast.Gt: ">", ast.GtE: ">=", ast.Eq: "==", ast.NotEq: "!=",
+}  # fmt: skip

@@ -26,7 +26,7 @@ class Program:
     ----------
     precision : "double" or "single"
         Of all floats; whole numbers have 64 bits.
-    lanes : 1, 4 or 8
+    lanes : 1 or 4
         How many numbers those of the type `LANES` are, which are computed at once.
 
     Examples

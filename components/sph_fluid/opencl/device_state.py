@@ -8,7 +8,6 @@ from quintet.components.shared.opencl.arrays import DeviceArray, run
 from quintet.components.shared.opencl.cells import Cells, NearLists
 from quintet.components.shared.search.cells import Grid, grid_between
 from quintet.components.sph_fluid.params import SphFluidParams
-from quintet.components.sph_fluid.ranks.method import places
 from quintet.components.sph_fluid.state import State
 
 
@@ -105,11 +104,6 @@ class DeviceState:
         self._list(self.position, grid, fluid_key, wall_key)
         state.exit_face[:] = 0
         state.reference, state.moved = np.zeros((self.count + len(state.mirror_point), 3)), 0.0
-
-    def note_sorted(self, state: State) -> None:
-        """Copy a state to the device that was sorted on the host."""
-        state.reference, state.moved = places(state), 0.0
-        self.put(state)
 
     def _list_as_noted(self, state: State) -> None:
         """List neighbours from where rows were when they were sorted, as they are in order."""

@@ -101,7 +101,14 @@ UNEVEN = {
 }
 
 
-@pytest.mark.parametrize("changes", [{}, {"kernel": "quintic"}, {"precision": "float32"}])
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"kernel": "quintic"},
+        pytest.param({}, marks=pytest.mark.full),
+        pytest.param({"precision": "float32"}, marks=pytest.mark.full),
+    ],
+)
 def test_walls_have_their_own_volume_where_the_spacing_does_not_divide_the_fluid(changes):
     params = params_of(MIRRORED | UNEVEN | changes)
     assert abs(relative_wall_volume(params) - 1.0) > 0.05
