@@ -14,7 +14,7 @@ import numpy as np
 
 from quintet.components.shared.opencl.prelude import Precision
 from quintet.interfaces.errors import SceneError
-from quintet.interfaces.libraries import require
+from quintet.interfaces.libraries import is_installed, require
 
 NO_DEVICE = (
     "no OpenCL device was found. Install the driver of yours (its file .icd belongs into "
@@ -100,6 +100,11 @@ def devices() -> list[Device]:
         return []
     handles = [handle for platform in platforms for handle in platform.get_devices()]
     return [Device(number, handle) for number, handle in enumerate(handles)]
+
+
+def is_any_there() -> bool:
+    """Whether this machine has pyopencl, and its first device double precision."""
+    return is_installed("pyopencl") and any(each.has_doubles for each in devices()[:1])
 
 
 def device_of(name: str) -> Device:

@@ -9,7 +9,7 @@ from dataclasses import replace
 import pytest
 
 from quintet.components.shared.opencl import __main__ as listing
-from quintet.components.shared.opencl.devices import NO_DEVICE, bandwidth, device_of
+from quintet.components.shared.opencl.devices import NO_DEVICE, bandwidth, device_of, is_any_there
 from quintet.coupler.launch.acceptance import settings
 from quintet.coupler.scene.read import load
 from quintet.interfaces import libraries
@@ -140,6 +140,13 @@ def test_a_kernel_that_finds_no_room_says_how_much_it_needs():
     queue = device_of("opencl").queue()
     with pytest.raises(StepError, match=r"memory of \d+ bytes; found no room for 80 bytes"):
         run(queue, kernel, 10, DeviceArray(queue, (10,)))
+
+
+def test_devices_are_tried_only_where_there_is_one(monkeypatch):
+    manifest = find("sph_fluid")
+    assert any(case.device == "opencl" for case in manifest.cases()) == is_any_there()
+    monkeypatch.setattr("quintet.components.shared.opencl.devices.devices", lambda: [])
+    assert {each.device for each in (*manifest.cases(), *manifest.conform_cases())} == {"cpu"}
 
 
 def test_reading_a_scene_loads_no_opencl():
