@@ -12,6 +12,7 @@ from quintet.interfaces.params import unknown
 
 HEXAHEDRON, TETRAHEDRON, FOUR_NODES = "hexahedron", "tetra10", "tetra"
 SOLIDS = (HEXAHEDRON, TETRAHEDRON, FOUR_NODES)  # kinds that are read
+RINGS = {"triangle": [(0, 1), (1, 2), (2, 0)], "line": [(0, 1)]}  # edges of faces and lines
 
 
 class Cells(NamedTuple):
@@ -47,11 +48,19 @@ def as_source(mesh: Any) -> Source:
     cells = [Cells(block.type, block.dim, np.asarray(block.data, np.int64)) for block in mesh.cells]
     # "gmsh:bounding_entities" lists entities of the geometry, not rows of cells.
     cell_sets = {key: rows for key, rows in mesh.cell_sets.items() if not key.startswith("gmsh:")}
+    # Gmsh 2.2 has a number of each cell in place of sets, and names of the numbers.
+    if (numbers := mesh.cell_data.get("gmsh:physical")) is not None:
+        for key, (tag, dim) in mesh.field_data.items():
+            pairs = zip(mesh.cells, numbers, strict=True)
+            rows = [np.flatnonzero((tags == tag) & (block.dim == dim)) for block, tags in pairs]
+            cell_sets.setdefault(key, rows)
     return Source(points, cells, dict(mesh.point_sets), cell_sets)
 
 
 def of_parts(name: str, source: Source, parts: Sequence[int | str]) -> Source:
-    """Keep only the cells of the named parts; sets keep those of their cells that are left.
+    """Keep only the cells of the named parts, and the faces and edges on them.
+
+    Sets keep those of their cells that are left.
 
     Parameters
     ----------
@@ -72,6 +81,16 @@ def of_parts(name: str, source: Source, parts: Sequence[int | str]) -> Source:
     for block, flags in zip(source.cells, chosen, strict=True):
         if block.type == HEXAHEDRON:
             source.check(np.flatnonzero(flags))
+    solids = [
+        block.data[flags].ravel()
+        for block, flags in zip(source.cells, chosen, strict=True)
+        if block.dim == 3
+    ]
+    has_solid = np.zeros(len(source.points), bool)
+    has_solid[np.concatenate([*solids, np.zeros(0, np.int64)])] = True
+    for block, flags in zip(source.cells, chosen, strict=True):
+        if block.dim < 3:
+            flags |= has_solid[block.data].all(axis=1)
     cells = [
         block._replace(data=block.data[flags])
         for block, flags in zip(source.cells, chosen, strict=True)
@@ -96,8 +115,8 @@ def _kept(rows: Whole, flags: np.ndarray) -> Whole:
 def with_midside_nodes(name: str, source: Source) -> Source:
     """Make tetrahedra of ten nodes from those of four.
 
-    A new node belongs to the sets that both ends of its edge belong to, and has their mean
-    velocity.
+    A new node belongs to the sets of nodes that both ends of its edge belong to, and to the faces
+    and lines in whose edges it stands; it has the mean velocity of the ends.
     """
     at = [number for number, block in enumerate(source.cells) if block.type == FOUR_NODES]
     corner = np.concatenate([source.cells[number].data for number in at])
@@ -107,6 +126,9 @@ def with_midside_nodes(name: str, source: Source) -> Source:
         count = len(cells[number].data)
         cells[number] = Cells(TETRAHEDRON, 3, nodes[first : first + count])
         first += count
+    for number, block in enumerate(cells):
+        if block.type in RINGS:  # the type stays, as notes count what the file has
+            cells[number] = block._replace(data=_with_middles(block, ends, len(source.points)))
     sets = {}
     for key, members in source.point_sets.items():
         rows = np.unique(np.asarray(members, np.int64))
@@ -123,3 +145,16 @@ def with_midside_nodes(name: str, source: Source) -> Source:
     return source._replace(
         points=points, cells=cells, point_sets=sets, velocity=velocity, notes=(*source.notes, note)
     )
+
+
+def _with_middles(block: Cells, ends: Whole, points: int) -> Whole:
+    """Nodes of triangles or lines, and behind them the new ones in the middles of their edges.
+
+    The nodes `points` and above stand in the middles of the edges `ends` (m, 2), in rising order.
+    An edge of no solid has no new node; its first end stands there again.
+    """
+    pairs = np.sort(block.data[:, RINGS[block.type]], axis=2)  # (f, edges, 2)
+    keys, wanted = (rows[..., 0] * points + rows[..., 1] for rows in (ends, pairs))
+    at = np.minimum(np.searchsorted(keys, wanted), len(keys) - 1)
+    middles = np.where(keys[at] == wanted, points + at, pairs[..., 0])
+    return np.concatenate([block.data, middles], axis=1)

@@ -164,6 +164,53 @@ def test_sets_of_faces_name_their_nodes():
     assert any("its set clamp of faces or edges names the 13 nodes" in n for n in loaded.notes)
 
 
+def of_four_nodes(folder):
+    """The cantilever's mesh with elements of the first order."""
+    lines, fewer, left = [], {"8": (1, 2), "9": (2, 3), "11": (4, 4), "15": (15, 1)}, 0
+    text = (CANTILEVER / "coarse.msh").read_text()
+    before, after = text.split("$Elements\n")
+    head, *rows = after.splitlines()
+    for row in rows:
+        words = row.split()
+        if left:
+            lines.append(" ".join(words[: 1 + nodes]))
+            left -= 1
+        elif row.startswith("$"):
+            lines.append(row)
+        else:
+            kind, nodes = fewer[words[2]]
+            lines.append(f"{words[0]} {words[1]} {kind} {words[3]}")
+            left = int(words[3])
+    return saved(folder, "four.msh", before + "\n".join(["$Elements", head, *lines, ""]))
+
+
+def test_sets_of_faces_of_four_nodes_have_their_midside_nodes(tmp_path):
+    loaded, whole = read(of_four_nodes(tmp_path)), read(str(CANTILEVER / "coarse.msh"))
+    assert len(loaded.node) == len(whole.node)
+    for name, place in (("clamp", 0.0), ("end", 0.1)):
+        at = np.flatnonzero(np.isclose(loaded.node[:, 0], place))
+        assert np.array_equal(loaded.sets[name], at) and len(at) == 13 == len(whole.sets[name])
+
+
+@pytest.mark.parametrize("order", [1, 2])
+def test_chosen_parts_keep_the_sets_of_faces_on_them(order, tmp_path):
+    file = of_four_nodes(tmp_path) if order == 1 else str(CANTILEVER / "coarse.msh")
+    loaded = read(file, parts=("beam",))
+    assert {name: len(nodes) for name, nodes in loaded.sets.items()} == {"clamp": 13, "end": 13}
+
+
+def test_physical_names_of_gmsh_2_are_sets(tmp_path):
+    names = '$PhysicalNames\n2\n2 1 "clamp"\n3 1 "beam"\n$EndPhysicalNames\n$Nodes'
+    text = gmsh(PLACES).replace("$Nodes", names, 1)
+    text = text.replace("$Elements\n1\n", "$Elements\n2\n2 9 2 1 1 1 2 3 5 6 7\n")
+    loaded = read(saved(tmp_path, "a.msh", text))
+    assert loaded.groups["beam"].tolist() == [0]
+    np.testing.assert_allclose(
+        np.sort(loaded.node[loaded.sets["clamp"]], axis=0),
+        np.sort(PLACES[[0, 1, 2, 4, 5, 6]], axis=0),
+    )
+
+
 def test_selections_take_whole_faces_of_six_nodes(tmp_path):
     """Four triangles each: 8 of the end; half of a face is none."""
     file = written(tmp_path / "a.vtk", *box((2, 1, 1)))
