@@ -29,6 +29,7 @@ from quintet.components.fe_plate.state import (
     node_shares,
     state_at_rest,
 )
+from quintet.components.shared.geometry.selections import ByBoxOrSet
 from quintet.components.shared.materials.params import material
 from quintet.components.shared.materials.solid import NEVER, Solid, solid
 from quintet.interfaces.errors import SceneError
@@ -158,7 +159,7 @@ def _free_axes(grid: Mesh, params: FePlateParams) -> Flags:
     free: Flags = np.ones((len(grid.node), 3), np.uint8)
     for number, support in enumerate(params.fixed):
         nodes = chosen(grid, support, f"fixed.{number}")
-        _require(nodes.any(), f"fixed.{number}: it must hold a node; it holds none.")
+        _require(nodes.any(), f"fixed.{number}: it must hold a node; it holds none.", [support])
         for axis in support.directions:
             free[nodes, AXES.index(axis)] = 0
     if params.dimensions == 2:
@@ -171,10 +172,12 @@ def _loaded_faces(grid: Mesh, params: FePlateParams) -> tuple[Whole, list[Whole]
     coupled: Whole = np.arange(len(grid.side))
     if params.coupled_faces:
         coupled = faces_in(grid, params.coupled_faces, "coupled_faces")
-        _require(len(coupled) > 0, "coupled_faces: the boxes must hold an outer face; none does.")
+        sentence = "coupled_faces: they must hold an outer face; none does."
+        _require(len(coupled) > 0, sentence, params.coupled_faces)
     pressed = [faces_in(grid, [load.faces], "pressures") for load in params.pressures]
     for number, faces in enumerate(pressed):
-        _require(len(faces) > 0, f"pressures.{number}: its box must hold an outer face; none is.")
+        sentence = f"pressures.{number}: it must hold an outer face; it holds none."
+        _require(len(faces) > 0, sentence, [params.pressures[number].faces])
     return coupled, pressed
 
 
@@ -285,6 +288,7 @@ def initial_state(params: FePlateParams, built: Structure) -> State:
     return state
 
 
-def _require(rule: object, sentence: str) -> None:
+def _require(rule: object, sentence: str, selections: Sequence[ByBoxOrSet]) -> None:
     if not rule:
-        raise SceneError(f"{sentence} Correct the box.")
+        cures = dict.fromkeys(selection.cure for selection in selections)
+        raise SceneError(f"{sentence} {' '.join(cures)}")

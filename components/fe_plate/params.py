@@ -13,7 +13,6 @@ from quintet.interfaces.params import (
     parameters,
 )
 
-LEAST_HOURGLASS = 1e-3
 Erosion = Literal["plastic_strain", "damage", "spall"]
 
 
@@ -166,12 +165,6 @@ class FePlateParams:
     stiffness_damping: NotNegative = 0.0
 
     def __post_init__(self) -> None:
-        if self.integration != "full" and self.hourglass < LEAST_HOURGLASS:
-            raise ValueError(
-                f"hourglass must be {LEAST_HOURGLASS:g} or more, for nothing else holds patterns "
-                f"that one quadrature point does not see; found {self.hourglass:g}. Raise it (0.05 "
-                'is usual), or set integration = "full".'
-            )
         if not self.parts:
             raise ValueError("parts must be at least one; found none. Add [[parts]].")
         if self.dimensions == 2:

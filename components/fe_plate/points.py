@@ -1,5 +1,6 @@
 """How many quadrature points the elements have, and what that does to bending."""
 
+from quintet.components.fe_plate.meshes.elements import require_one_kind
 from quintet.components.fe_plate.meshes.layers import ENOUGH, fewest_layers
 from quintet.components.fe_plate.meshes.params import Part
 from quintet.components.fe_plate.params import FePlateParams
@@ -8,22 +9,33 @@ from quintet.interfaces.errors import SceneError
 
 ALL = 8  # points of a hexahedron with `integration = "full"`
 OF_TETRAHEDRA = 4
+LEAST_HOURGLASS = 1e-3  # of one point
 
 
 def points_of(params: FePlateParams) -> int:
     """Quadrature points of each element, 1 or 8, and 4 of tetrahedra."""
-    if params.parts[0].has_tetrahedra:
+    kinds = [part.has_tetrahedra for part in params.parts]
+    require_one_kind(kinds)
+    if kinds[0]:
         if params.integration == "reduced":
             raise SceneError(
                 "integration: tetrahedra with 10 nodes have four quadrature points, as one would "
                 'leave most of their modes without stiffness; found "reduced". Leave it out.'
             )
         return OF_TETRAHEDRA
-    if params.integration != "auto":
-        return ALL if params.integration == "full" else 1
-    if any(is_shocked(part) for part in params.parts):
-        return 1
-    return ALL if _fewest(params)[0] < ENOUGH else 1
+    if params.integration == "full" or (
+        params.integration == "auto"
+        and not any(is_shocked(part) for part in params.parts)
+        and _fewest(params)[0] < ENOUGH
+    ):
+        return ALL
+    if params.hourglass < LEAST_HOURGLASS:
+        raise SceneError(
+            f"hourglass must be {LEAST_HOURGLASS:g} or more, for nothing else holds patterns "
+            f"that one quadrature point does not see; found {params.hourglass:g}. Raise it (0.05 "
+            'is usual), or set integration = "full".'
+        )
+    return 1
 
 
 def is_shocked(part: Part) -> bool:

@@ -1,5 +1,7 @@
 """Whether the elements of a mesh from a file can be computed with."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from quintet.components.fe_plate.meshes import tetrahedra
@@ -11,6 +13,16 @@ NEIGHBOURS = np.array(
     [(1, 3, 4), (2, 0, 5), (3, 1, 6), (0, 2, 7), (7, 5, 0), (4, 6, 1), (5, 7, 2), (6, 4, 3)]
 )
 POOR = 0.2  # scaled Jacobian below which an element is badly shaped (Knupp 2000)
+
+
+def require_one_kind(has_tetrahedra: Sequence[bool]) -> None:
+    """Refuse parts of hexahedra beside parts of tetrahedra."""
+    if len(set(has_tetrahedra)) > 1:
+        raise SceneError(
+            "parts: all of a component must have elements of one kind; found hexahedra in parts."
+            f"{has_tetrahedra.index(False)} and tetrahedra in parts.{has_tetrahedra.index(True)}. "
+            "Make two components of them, which a link contact may join, or mesh them alike."
+        )
 
 
 def least_jacobians(node: Array, corner: Whole) -> tuple[Array, Array]:

@@ -22,7 +22,7 @@ from quintet.components.fe_plate.meshes.source import (
     of_parts,
     with_midside_nodes,
 )
-from quintet.components.fe_plate.meshes.tetrahedra import NODES, least_spacing
+from quintet.components.fe_plate.meshes.tetrahedra import NODES, incomplete_faces, least_spacing
 from quintet.interfaces.errors import SceneError
 
 
@@ -81,9 +81,23 @@ def read(file: str, coincident: str = "refuse", parts: tuple[int | str, ...] = (
                 f"mesh {name}: its set {key} of faces or edges names the {len(sets[key])} nodes on "
                 "them."
             )
+    if corner.shape[1] == NODES:
+        notes += _incomplete(name, corner, sets)
     groups = _groups(name, source, notes)
     velocity = None if source.velocity is None else source.velocity[used]
     return FileMesh(points[used], corner, sets, groups, tuple(notes), velocity)
+
+
+def _incomplete(name: str, corner: Whole, sets: dict[str, Whole]) -> list[str]:
+    """Notes of sets that hold faces by their corners alone."""
+    counts = {key: incomplete_faces(corner, nodes) for key, nodes in sets.items()}
+    return [
+        f"mesh {name}: its set {key} has all corners of {faces} outer faces, but lacks {lacking} "
+        "nodes in the middles of their edges: `fixed` leaves these free, and the faces are not "
+        "selected. Export the set with all nodes, if it shall hold the faces."
+        for key, (faces, lacking) in counts.items()
+        if faces
+    ]
 
 
 def _parsed(file: str) -> Source:
@@ -169,7 +183,7 @@ def _left_out(name: str, source: Source, used: Whole) -> list[str]:
         )
     if not +marks:
         return []
-    return [f"mesh {name}: {_listed(+marks)} are left out; they lie on its solids, and mark them."]
+    return [f"mesh {name}: {_listed(+marks)} lie on its solids; they mark nodes, and bear nothing."]
 
 
 def _listed(kinds: Counter[str]) -> str:

@@ -14,6 +14,7 @@ from quintet.components.fe_plate.meshes.arrays import Array, Whole
 from quintet.components.fe_plate.meshes.box import box, rectangle
 from quintet.components.fe_plate.meshes.coincidence import first_at_place
 from quintet.components.fe_plate.meshes.cylinder import cylinder
+from quintet.components.fe_plate.meshes.elements import require_one_kind
 from quintet.components.fe_plate.meshes.files import least_edge
 from quintet.components.fe_plate.meshes.params import MeshedPart
 from quintet.components.fe_plate.meshes.selections import Elements, Faces, NodeSet
@@ -83,7 +84,7 @@ def mesh(parts: Sequence[MeshedPart], dimensions: int = 3, sets: Sequence[NodeSe
         corners.append(corner + first)
         first, count = first + len(node), count + len(corner)
     number = np.repeat(np.arange(len(parts)), [len(rows) for rows in corners])
-    _require_alike(corners)
+    require_one_kind([rows.shape[1] == TETRAHEDRON for rows in corners])
     corner = np.concatenate(corners)
     outer = outer_sides(corner) if dimensions == 3 else outer_edges(corner)
     node = np.concatenate(nodes)
@@ -97,17 +98,6 @@ def mesh(parts: Sequence[MeshedPart], dimensions: int = 3, sets: Sequence[NodeSe
         named[node_set.name] = np.flatnonzero(inside(node, node_set))
     velocity = _joined(velocities, len(node)) if velocities else None
     return Mesh(node, corner, number, *outer, named, groups, tuple(notes), velocity)
-
-
-def _require_alike(corners: Sequence[Whole]) -> None:
-    """Refuse parts of hexahedra beside parts of tetrahedra."""
-    kinds = [rows.shape[1] for rows in corners]
-    if len(set(kinds)) > 1:
-        raise SceneError(
-            "parts: all of a component must have elements of one kind; found hexahedra in parts."
-            f"{kinds.index(8)} and tetrahedra in parts.{kinds.index(TETRAHEDRON)}. Make two "
-            "components of them, which a link contact may join, or mesh them alike."
-        )
 
 
 def _joined(velocities: list[tuple[int, Array]], nodes: int) -> Array:

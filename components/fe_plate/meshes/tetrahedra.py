@@ -108,6 +108,27 @@ def outer_triangles(corner: Whole) -> tuple[Whole, Whole]:
     return side, np.repeat(owner[outer], len(PIECES))
 
 
+def incomplete_faces(corner: Whole, members: Whole) -> tuple[int, int]:
+    """Count outer faces of which a set has all corners but not all midside nodes, and the latter.
+
+    Parameters
+    ----------
+    corner : (e, 10) int array
+    members : (k,) int array
+        Nodes of the set.
+    """
+    face = corner[:, FACES].reshape(-1, 6)
+    is_member = np.zeros(int(corner.max()) + 1, bool)
+    is_member[members] = True
+    _, first, count = np.unique(
+        np.sort(face[:, :3], axis=1), axis=0, return_index=True, return_counts=True
+    )
+    held = face[first[count == 1]]
+    held = held[is_member[held[:, :3]].all(axis=1)][:, 3:]
+    lacks = ~is_member[held]
+    return int(lacks.any(axis=1).sum()), len(np.unique(held[lacks]))
+
+
 def require_sound(where: str, node: Array, corner: Whole) -> list[str]:
     """Refuse elements that are collapsed, inside out or misnumbered; note badly shaped ones."""
     ordered = np.sort(corner, axis=1)
@@ -125,18 +146,20 @@ def require_sound(where: str, node: Array, corner: Whole) -> list[str]:
     away = np.linalg.norm(x[:, 4:] - ends.mean(axis=2), axis=2)
     far = away > MIDDLE * np.linalg.norm(ends[:, :, 1] - ends[:, :, 0], axis=2)
     if far.any():
-        element, edge = np.argwhere(far)[0]
+        share = away / np.linalg.norm(ends[:, :, 1] - ends[:, :, 0], axis=2)
+        element, edge = np.unravel_index(np.argmax(np.where(far, share, 0.0)), far.shape)
         raise SceneError(
             f"{where}: each midside node must lie within a quarter of an edge of the middle of its "
-            f"own edge; node {4 + edge} of element {element} at {_middle(node, corner, element)} m "
-            f"does not, and {int(far.any(axis=1).sum())} of {len(corner)} elements have such "
-            "nodes: they are out of order, or their faces are too curved. Export it again, or "
-            "refine it."
+            f"own edge; found node {4 + edge} of element {element} at "
+            f"{_middle(node, corner, int(element))} m {share[element, edge]:.2g} of the edge away, "
+            f"the farthest, and such nodes in {int(far.any(axis=1).sum())} of {len(corner)} "
+            "elements: they are out of order, or faces are too curved. Number each element's last "
+            "six nodes as the file's format does, or refine the mesh where it is curved."
         )
     least = jacobians(node, corner, np.concatenate([np.eye(4), POINTS])).min(axis=1)
     _require_positive(where, node, corner, least, "at its corners and points, so curved it is")
-    ratio = _radius_ratio(x[:, :4], straight)
-    poor = np.flatnonzero(ratio < POOR)
+    ratio = radius_ratio(x[:, :4], straight)
+    poor = np.flatnonzero(~(ratio >= POOR))
     if not len(poor):
         return []
     worst = poor[np.argmin(ratio[poor])]
@@ -159,7 +182,7 @@ def _require_positive(where: str, node: Array, corner: Whole, least: Array, at: 
         )
 
 
-def _radius_ratio(x: Array, six_volumes: Array) -> Array:
+def radius_ratio(x: Array, six_volumes: Array) -> Array:
     """3 r/R (e,) of the spheres within and around tetrahedra with corners x (e, 4, 3)."""
     areas = sum(
         0.5 * np.linalg.norm(np.cross(x[:, j] - x[:, i], x[:, k] - x[:, i]), axis=1)
@@ -171,8 +194,11 @@ def _radius_ratio(x: Array, six_volumes: Array) -> Array:
         for (i, j), (k, m) in (((0, 1), (2, 3)), ((0, 2), (1, 3)), ((0, 3), (1, 2)))
     ]
     a, b, c = products
-    outer = np.sqrt((a + b + c) * (a + b - c) * (a - b + c) * np.maximum(b + c - a, 0.0))
-    outer /= 4.0 * six_volumes
+    factors = [np.maximum(side, 0.0) for side in (a + b - c, a - b + c, b + c - a)]
+    outer = np.sqrt((a + b + c) * factors[0] * factors[1] * factors[2]) / (4.0 * six_volumes)
+    # Of flat elements the factors are lost in rounding; half an edge is never above the radius.
+    longest = np.linalg.norm(x[:, EDGES[:, 1]] - x[:, EDGES[:, 0]], axis=2).max(axis=1)
+    outer = np.maximum(outer, 0.5 * longest)
     return np.asarray(3.0 * inner / outer)
 
 

@@ -42,6 +42,11 @@ class ByBoxOrSet:
     def __post_init__(self) -> None:
         self.require_one(self.node_set)
 
+    @property
+    def cure(self) -> str:
+        """What to do about a selection that holds nothing."""
+        return f"Correct the set {self.node_set}." if self.node_set else "Correct the box."
+
     def require_one(self, name: str) -> None:
         """Refuse a selection that is not either by the box or by the name of a set."""
         corners = sum(corner is not None for corner in (self.lowest, self.highest))

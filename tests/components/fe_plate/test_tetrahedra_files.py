@@ -10,9 +10,16 @@ from quintet.components.fe_plate.component import FePlate
 from quintet.components.fe_plate.heat.params import ConductingPart
 from quintet.components.fe_plate.meshes.files import read
 from quintet.components.fe_plate.meshes.params import Part
-from quintet.components.fe_plate.meshes.selections import Faces, Fixed
-from quintet.components.fe_plate.meshes.tetrahedra import EDGES, jacobians, point_volumes
+from quintet.components.fe_plate.meshes.selections import Faces, Fixed, NodeSet
+from quintet.components.fe_plate.meshes.tetrahedra import (
+    EDGES,
+    POOR,
+    jacobians,
+    point_volumes,
+    radius_ratio,
+)
 from quintet.components.fe_plate.params import FePlateParams
+from quintet.components.fe_plate.plan import plan
 from quintet.components.shared.materials.params import Material
 from quintet.interfaces.errors import SceneError
 
@@ -94,7 +101,10 @@ def test_a_straight_element_has_its_volume(tmp_path):
 
 def test_nodes_out_of_order_are_refused(tmp_path):
     file = saved(tmp_path, "a.inp", abaqus(PLACES, numbers=[1 + k for k in GMSH]))
-    with pytest.raises(SceneError, match=r"each midside node must .* node 8 of element 0 .*order"):
+    with pytest.raises(
+        SceneError,
+        match=r"midside node must .* found node 9 of element 0 .*order",
+    ):
         Part(shape="mesh", file=file, material=ELASTIC).placed()
 
 
@@ -139,15 +149,16 @@ def test_four_nodes_are_raised_to_ten_with_a_note(tmp_path):
     assert made.built.volume.sum() == pytest.approx(1.0, rel=1e-12)
 
 
-TET4 = "      1       1       1       2       3       4       4       4       4       4\n"
-OLD = "      1       1       1       2       3       3       4       4       4       4\n"
+TET4 = "       1       1       1       2       3       4       4       4       4       4\n"
+OLD = "       1       1       1       2       3       3       4       4       4       4\n"
+TEN = "       1       1\n" + "".join(f"{k:8d}" for k in (1, 2, 3, *[4] * 7)) + "\n"
 
 
-@pytest.mark.parametrize("line", [TET4, OLD])
+@pytest.mark.parametrize("line", [TET4, OLD, TEN])
 @pytest.mark.parametrize("keyword", ["*ELEMENT_SOLID", "*ELEMENT_SOLID_TET4TOTET10"])
 def test_four_nodes_of_ls_dyna_are_raised_and_have_velocities(line, keyword, tmp_path):
     nodes = listed(CORNERS)
-    text = f"*KEYWORD\n*NODE\n{nodes}{keyword}\n {line}*INITIAL_VELOCITY_NODE\n1,0.,0.,4.\n*END\n"
+    text = f"*KEYWORD\n*NODE\n{nodes}{keyword}\n{line}*INITIAL_VELOCITY_NODE\n1,0.,0.,4.\n*END\n"
     loaded = read(saved(tmp_path, "a.k", text))
     assert loaded.corner.shape == (1, 10)
     np.testing.assert_allclose(loaded.velocity[loaded.corner[0], 2], [4, 0, 0, 0, 2, 0, 2, 2, 0, 0])
@@ -167,6 +178,7 @@ def test_sets_of_faces_name_their_nodes():
 def of_four_nodes(folder):
     """The cantilever's mesh with elements of the first order."""
     lines, fewer, left = [], {"8": (1, 2), "9": (2, 3), "11": (4, 4), "15": (15, 1)}, 0
+    nodes = 0
     text = (CANTILEVER / "coarse.msh").read_text()
     before, after = text.split("$Elements\n")
     head, *rows = after.splitlines()
@@ -209,6 +221,46 @@ def test_physical_names_of_gmsh_2_are_sets(tmp_path):
         np.sort(loaded.node[loaded.sets["clamp"]], axis=0),
         np.sort(PLACES[[0, 1, 2, 4, 5, 6]], axis=0),
     )
+
+
+def test_a_set_of_corners_alone_is_noted(tmp_path):
+    node, corner = box((2, 1, 1))
+    clamp = np.flatnonzero(node[:, 0] < 1e-9)
+    corners = np.intersect1d(clamp, corner[:, :4])
+    file = written(tmp_path / "a.inp", node, corner, point_sets={"c": corners, "all": clamp})
+    notes = [note for note in read(file).notes if "lacks" in note]
+    assert len(notes) == 1 and "its set c has all corners of 2 outer faces" in notes[0]
+    assert "lacks 5 nodes in the middles" in notes[0]
+
+
+def test_the_flattest_elements_have_a_small_radius_ratio():
+    """Four corners near a circle: the radius of the sphere around is lost in rounding."""
+    for seed in range(50):
+        rng = np.random.default_rng(seed)
+        angle = np.sort(rng.uniform(0.0, 2.0 * np.pi, 4))
+        corners = np.stack([np.cos(angle), np.sin(angle), 1e-9 * rng.uniform(-1, 1, 4)], axis=1)
+        volumes = np.abs(np.linalg.det(corners[1:] - corners[0]))
+        assert 0.0 <= radius_ratio(corners[None], np.array([volumes]))[0] < POOR
+
+
+def test_a_check_refuses_tetrahedra_beside_hexahedra():
+    parts = [
+        Part(
+            lowest=(x, 0.0, 0.0), highest=(x + 1.0, 1.0, 1.0), elements=(8, 8, 8),
+            tetrahedra=x > 0.0, material=ELASTIC,
+        )
+        for x in (0.0, 3.0)
+    ]  # fmt: skip
+    with pytest.raises(SceneError, match=r"hexahedra in parts.0 and tetrahedra in parts.1"):
+        plan(FePlateParams(parts=tuple(parts)))
+
+
+def test_what_an_empty_set_needs_is_said():
+    part = Part(lowest=(0.0,) * 3, highest=(1.0,) * 3, elements=(8, 8, 8), material=ELASTIC)
+    sets = (NodeSet(name="edge", lowest=(0.0,) * 3, highest=(0.0, 0.0, 1.0)),)
+    faces = (Faces(node_set="edge"),)
+    with pytest.raises(SceneError, match=r"none does. Correct the set edge.$"):
+        FePlate(FePlateParams(parts=(part,), node_sets=sets, coupled_faces=faces))
 
 
 def test_selections_take_whole_faces_of_six_nodes(tmp_path):

@@ -7,7 +7,7 @@ import numpy as np
 
 from quintet.components.fe_plate.meshes.tetrahedra import EDGES, raised
 
-# Places in which other codes number the nodes 4 to 9, of those that VTK and we have.
+# Corners of a regular tetrahedron.
 REGULAR = np.array([(1.0, 1.0, 1.0), (-1.0, 1.0, -1.0), (1.0, -1.0, -1.0), (-1.0, -1.0, 1.0)])
 
 

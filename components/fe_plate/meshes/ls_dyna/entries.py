@@ -112,7 +112,10 @@ def tetrahedron_of(solid: Element) -> list[int]:
         return nodes
     four = list(dict.fromkeys(nodes))
     orders = [[four[k] for k in order] for order in FOUR_OF_EIGHT] if len(four) == 4 else []
-    return four if len(nodes) == 4 == len(four) or nodes in orders else []
+    if len(nodes) == 4 == len(four):
+        return four
+    # Ten columns may repeat the last node too.
+    return four if nodes[:8] in orders and set(nodes[8:]) <= {four[3]} else []
 
 
 def require_eight_nodes(number: int, solid: Element) -> None:
