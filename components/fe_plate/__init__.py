@@ -11,11 +11,13 @@ velocities are known at the steps' ends, and the impulse of a load is its force 
 rounding.
 
 Of all hexahedra the step is bounded by 2/ω with ω² ≤ 2 (K + 4G/3)/ρ Σ B², a proven bound of the
-greatest frequency (0.58 of the stable step of cubes).
+greatest frequency (0.58 of the stable step of cubes); of tetrahedra by the greatest frequency of
+their points, each with its share of the nodes' masses (`kernels/ten_nodes.py`).
 
 Papers: Flanagan & Belytschko, Int. J. Numer. Methods Eng. 17 (1981) 679; Belytschko, Liu, Moran &
 Elkhodary, Nonlinear Finite Elements (2014), chapter 8; Benson, Comput. Methods Appl. Mech. Eng. 99
-(1992) 235 (bulk viscosity).
+(1992) 235 (bulk viscosity); Hinton, Rock & Zienkiewicz, Earthq. Eng. Struct. Dyn. 4 (1976) 245
+(masses of tetrahedra); Flanagan & Belytschko, J. Appl. Mech. 51 (1984) 35 (their bound).
 """
 
 from quintet.components.fe_plate.params import FePlateParams

@@ -132,7 +132,8 @@ class FePlateParams:
         Reduced: one quadrature point an element, with stabilisation: of n layers bending lacks
         1/n² of its stiffness; full: eight, with strains assumed so that bending is exact: eight
         times the work. Auto: full where a slender part has fewer than 8 layers and no material
-        has a law of shocks or of failure, reduced elsewhere.
+        has a law of shocks or of failure, reduced elsewhere. Tetrahedra have four points, and
+        refuse reduced.
     courant : 1
         Share of the greatest step that is proven stable; that of a mesh may be twice as great.
     hourglass : 1

@@ -33,12 +33,12 @@ class Fixed(ByBoxOrSet):
 
 @parameters
 class Faces(ByBoxOrSet):
-    """Outer faces: those all of whose corners are in a box at the start, or in a set of nodes."""
+    """Outer faces: those all of whose nodes are in a box at the start, or in a set of nodes."""
 
 
 @parameters
 class Elements(ByBoxOrSet):
-    """Elements: those all of whose corners are in a box at the start, or in a set of nodes.
+    """Elements: those all of whose nodes are in a box at the start, or in a set of nodes.
 
     Parameters
     ----------
