@@ -225,7 +225,7 @@ def courant_limit(params: SphFluidParams) -> float:
     # Left out of scenes without a damper.
     from quintet.components.sph_fluid.pairs.acoustic_damper import courant_limit as damped_limit
 
-    return min(params.courant, damped_limit(params.acoustic_damper))
+    return min(params.courant, damped_limit(params.acoustic_damper, params.kernel))
 
 
 def shepard_filter(params: SphFluidParams) -> "ShepardFilter | None":

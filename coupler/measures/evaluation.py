@@ -320,6 +320,11 @@ def _why_none(expectation: Expectation) -> str:
         return f"the curve never passes from_level {expectation.from_level:g}, or has no value then"
     if expectation.level is not None:
         return f"the curve never passes the level {expectation.level:g}"
+    if expectation.waves is not None:
+        return (
+            "the recorded curves hold no whole period, or the places cannot tell the two trains "
+            "apart: two of them should be 0.05 to 0.45 lengths apart"
+        )
     return "the recorded curve has no finite value, or does not oscillate"
 
 

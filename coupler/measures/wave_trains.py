@@ -7,10 +7,13 @@ mean. Its complex amplitudes are those of two wave trains that run against each 
 
 in least squares over the places (Mansard & Funke, Proc. 17th Int. Conf. Coast. Eng. (1980) 154;
 with two places Goda & Suzuki, Proc. 15th (1976) 828). Where k is not known it is the one that fits
-best; this needs three places.
+best; this needs three places. There is no value where the trains cannot be told apart: where all
+places lie about multiples of half a length apart (Goda & Suzuki ask for a distance of 0.05 to 0.45
+lengths), or where the length that fits best is an end of those tried.
 
 The height, from trough to crest, is that of the fitted curve at each place, with its overtones,
-times |A|/|B|; its mean over the places counts.
+times |A|/|B|; its mean over the places, with weights |B|², counts, since near a node of standing
+waves overtones are all that is seen.
 """
 
 import math
@@ -27,7 +30,7 @@ from quintet.interfaces.params import Number, Positive, parameters
 HARMONICS = 3  # that are fitted in time
 FEWEST = 2  # places; 3 where the length is sought
 PHASES = 720  # of a period, at which the fitted curve is looked at
-TINY = 1e-3  # of the wave's amplitude: a node, where its curve says nothing
+APART = 0.3  # |sin k dx| of the best two places: of a distance of 0.05 or 0.45 lengths 0.31
 CYCLES = 0.99  # that a curve must hold
 TRIALS = 400  # lengths that are looked at, before the best one is refined
 SHARPENED = 60  # steps of the golden section
@@ -76,21 +79,33 @@ class Train(NamedTuple):
     length: float  # m
 
 
+NONE = Train(math.nan, math.nan, math.nan)
+
+
 def fit(curves: Curve, line: WaveLine) -> Train:
     """Fit two wave trains to curves, values (m, k), at the places of a line."""
     times = curves.times - curves.times[0]
     if len(times) < 4 * HARMONICS or times[-1] < CYCLES * line.period:
-        return Train(math.nan, math.nan, math.nan)
+        return NONE
     omega = 2.0 * math.pi / line.period
     factors = np.linalg.lstsq(_columns(omega * times), curves.values, rcond=None)[0]
     amplitudes = factors[1] - 1j * factors[2]  # (k,) B
     places = np.array(line.places)
     length = line.length or _best_length(places, amplitudes)
+    if math.isnan(length) or not _tell_apart(places, length):
+        return NONE
     forth, back = _trains(places, amplitudes, length)[0].tolist()
     if not forth:
         return Train(0.0, math.nan, length)
-    share = abs(forth) / np.maximum(np.abs(amplitudes), TINY * abs(forth))
-    return Train(float((_ranges(factors) * share).mean()), abs(back) / abs(forth), length)
+    sizes = np.abs(amplitudes)
+    height = abs(forth) * float(_ranges(factors) @ sizes / (sizes @ sizes))
+    return Train(height, abs(back) / abs(forth), length)
+
+
+def _tell_apart(places: Array, length: float) -> bool:
+    """Whether two of the places see waves of a length [m] in phases that differ enough."""
+    distances = places[:, np.newaxis] - places
+    return bool(np.abs(np.sin(2.0 * math.pi / length * distances)).max() >= APART)
 
 
 def _ranges(factors: Array) -> Array:
@@ -117,12 +132,17 @@ def _trains(places: Array, amplitudes: Complex, length: float) -> tuple[Complex,
 
 
 def _best_length(places: Array, amplitudes: Complex) -> float:
-    """Length [m] that fits best, from twice the least to four times the whole distance."""
+    """Length [m] that fits best, from twice the least to four times the whole distance.
+
+    It is nan where one of these two fits best.
+    """
     shortest, longest = 2.0 * float(np.diff(places).min()), 4.0 * float(np.ptp(places))
     numbers = np.linspace(1.0 / longest, 1.0 / shortest, TRIALS)
     misfits = [_trains(places, amplitudes, 1.0 / number)[1] for number in numbers]
     k = int(np.argmin(misfits))
-    low, high = float(numbers[max(k - 1, 0)]), float(numbers[min(k + 1, TRIALS - 1)])
+    if k in (0, TRIALS - 1):
+        return math.nan
+    low, high = float(numbers[k - 1]), float(numbers[k + 1])
     golden = 0.5 * (math.sqrt(5.0) - 1.0)
     for _ in range(SHARPENED):
         inner = high - golden * (high - low), low + golden * (high - low)

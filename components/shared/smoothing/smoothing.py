@@ -14,6 +14,8 @@ from quintet.components.shared.smoothing.cubic_spline import SUPPORT
 
 TINY = 1e-12  # h²
 KERNELS = ("cubic", "quintic", "wendland")
+# Greatest h |Σ V sin(k·r) ∇W| on a square or cubic lattice, h from 1.2 to 2 spacings.
+STEEPEST = {"cubic": 1.11, "quintic": 1.33, "wendland": 1.16}
 
 Kernel = Literal["cubic", "quintic", "wendland"]
 

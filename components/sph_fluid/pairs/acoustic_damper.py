@@ -11,12 +11,14 @@ In a step of position Verlet a sound wave that pairs see as ω = K c₀/h is sta
 
     ¼ C² K² + ½ ζ C K² < 1,   C = dt c₀/h,
 
-by the eigenvalues of its two variables; K = STEEPEST is what the steepest wave on a lattice has.
+by the eigenvalues of its two variables; K is what the steepest wave on a lattice has, STEEPEST of
+the kernel.
 """
 
 import math
 
 from quintet.components.shared.search.neighbours import Lists
+from quintet.components.shared.smoothing.smoothing import STEEPEST, Kernel
 from quintet.components.shared.threads import Team
 from quintet.components.sph_fluid.boundary.method import BoundaryMethod
 from quintet.components.sph_fluid.constants import constants
@@ -24,15 +26,12 @@ from quintet.components.sph_fluid.pairs.kernels import add_mirrored_damping, wri
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.state import State
 
-# Greatest h |Σ V sin(k·r) ∇W| on a square or cubic lattice, cubic spline and Wendland's kernel, h
-# from 1.2 to 2 spacings: 1.06 to 1.16.
-STEEPEST = 1.16
 SAFE = 0.9  # of the step that it allows: what is no lattice is a little steeper
 
 
-def courant_limit(damper: float) -> float:
+def courant_limit(damper: float, kernel: Kernel) -> float:
     """Greatest step over the time that sound takes through a smoothing length."""
-    return SAFE * (math.sqrt(damper**2 + (2.0 / STEEPEST) ** 2) - damper)
+    return SAFE * (math.sqrt(damper**2 + (2.0 / STEEPEST[kernel]) ** 2) - damper)
 
 
 class AcousticDamper:
