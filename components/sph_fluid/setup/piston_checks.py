@@ -87,7 +87,7 @@ def _check_start(where: str, piston: Piston, boundary: Boundary, spacing: float)
     """A motion begins where the part stands in the scene, outside of the fluid."""
     place = piston.path.trajectory.at(0.0).place
     shift, angle = math.hypot(*place[:3].tolist()), float(place[3])
-    arms = [math.dist(corner, piston.path.point) for corner in _corners(piston, boundary)]
+    arms = [math.dist(corner, piston.path.point) for corner in part_corners(piston, boundary)]
     if shift + abs(angle) * max(arms, default=0.0) > START * spacing:
         raise ValueError(
             f"{where}.motion must begin at no displacement and no angle, where {piston.part} "
@@ -96,7 +96,7 @@ def _check_start(where: str, piston: Piston, boundary: Boundary, spacing: float)
         )
 
 
-def _corners(piston: Piston, boundary: Boundary) -> Array:
+def part_corners(piston: Piston, boundary: Boundary) -> Array:
     """Corners (n, 3) m of an obstacle or a mesh; none of a face, which does not turn."""
     if (box := piston.number("obstacles")) >= 0:
         return np.array(list(itertools.product(*zip(*boundary.solids[box], strict=True))))

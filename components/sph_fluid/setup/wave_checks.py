@@ -1,5 +1,6 @@
 """What wave makers and damping zones must suit; each mistake is one sentence."""
 
+import itertools
 import math
 
 import numpy as np
@@ -7,6 +8,7 @@ import numpy as np
 from quintet.components.shared.geometry.bounds import Bounds
 from quintet.components.sph_fluid.setup.boundary import Boundary
 from quintet.components.sph_fluid.setup.geometry import ROUNDING
+from quintet.components.sph_fluid.setup.piston_checks import part_corners
 from quintet.components.sph_fluid.setup.pistons import Piston
 from quintet.components.sph_fluid.setup.wave_maker import LEAST_PARTICLES, Waves
 from quintet.interfaces.component import Array
@@ -26,6 +28,11 @@ def check_waves(
         if piston.waves is None:
             continue
         where, waves = f"boundary.pistons[{number}]", piston.waves
+        if boundary.motion is not None:
+            raise ValueError(
+                f"{where}.waves and boundary.motion do not go together: the theory is for a tank "
+                "that stands; found both. Remove one."
+            )
         _check_water(where, waves, (bottom, level), gravity, spacing)
         if waves.significant < (LEAST_PARTICLES - ROUNDING) * spacing:
             raise ValueError(
@@ -33,8 +40,14 @@ def check_waves(
                 f"more to run far; found {waves.significant / spacing:.3g}. Refine the spacing, or "
                 "raise the height."
             )
-        if piston.path.turns and piston.number("obstacles") >= 0:
-            _check_flap(where, piston, boundary)
+        corners = part_corners(piston, boundary)
+        if corners.size == 0:  # a face of the tank, which is refused with the pistons
+            continue
+        _check_front(where, waves, corners, extents, spacing)
+        _check_height(where, waves, corners, spacing)
+        if waves.turns:
+            _check_hinge(where, waves, corners, spacing)
+            _check_flap(where, piston, boundary, corners)
 
 
 def _check_water(
@@ -55,12 +68,67 @@ def _check_water(
         )
 
 
-def _check_flap(where: str, piston: Piston, boundary: Boundary) -> None:
-    """A flap that is an obstacle stays in the tank when it leans most."""
+def _check_front(
+    where: str, waves: Waves, corners: Array, extents: tuple[Bounds, ...], spacing: float
+) -> None:
+    """Water begins at the front of a paddle with corners (n, 3) m, and there is none behind."""
+    forward = waves.forward
+    face = float((corners @ forward).max())
+    boxes = [np.array(list(itertools.product(*zip(*box, strict=True)))) for box in extents]
+    begin = min(float((box @ forward).min()) for box in boxes) - face
+    end = max(float((box @ forward).max()) for box in boxes) - face
+    reach = (1.0 + ROUNDING) * spacing
+    if end <= reach or (begin < -reach and np.count_nonzero(forward) == 1):
+        raise ValueError(
+            f"{where}.waves need water in front of the paddle along heading {waves.heading}, and "
+            f"none behind; found it from {begin:.3g} to {end:.3g} m from the paddle's face. Turn "
+            "heading, or move the paddle or the water."
+        )
+    if begin > reach:
+        raise ValueError(
+            f"{where}.waves need water within a spacing of the paddle's face, {spacing:g} m; found "
+            f"it {begin:.3g} m away along heading {waves.heading}. Move the paddle or the water."
+        )
+
+
+def _check_height(where: str, waves: Waves, corners: Array, spacing: float) -> None:
+    """A paddle reaches from the bed, or from its hinge above that, to above the waves."""
+    low, high = float(corners[:, 2].min()), float(corners[:, 2].max())
+    base, top = max(waves.bottom, waves.point[2] if waves.turns else -math.inf), waves.level
+    little = ROUNDING * spacing
+    top += waves.significant
+    if low > base + little or high < top - little:
+        raise ValueError(
+            f"{where}: the paddle must reach from {base:g} m, the bed or a hinge above it, to a "
+            f"height of waves above still water, {top:.4g} m; found it from {low:g} to {high:g} m. "
+            "Make it higher, or lower the waves."
+        )
+
+
+def _check_hinge(where: str, waves: Waves, corners: Array, spacing: float) -> None:
+    """A flap's hinge is in the flap, and no part of the flap is in water below it."""
+    along, hinge = corners @ waves.forward, float(np.array(waves.point) @ waves.forward)
+    low, high, little = float(along.min()), float(along.max()), ROUNDING * spacing
+    if not low - little <= hinge <= high + little:
+        raise ValueError(
+            f"{where}.waves.hinge must be within the paddle along heading, from {low:g} to "
+            f"{high:g} m; found {hinge:g} m. Move the hinge."
+        )
+    foot, height = float(corners[:, 2].min()), waves.point[2]
+    if height > waves.bottom + little and foot < height - (1.0 + ROUNDING) * spacing:
+        raise ValueError(
+            f"{where}: a flap must end at its hinge where that is above the bed, at {height:g} m: "
+            f"below, the theory has a wall that stands; found the flap down to {foot:g} m. Shorten "
+            "it, or lower the hinge to the bed."
+        )
+
+
+def _check_flap(where: str, piston: Piston, boundary: Boundary, corners: Array) -> None:
+    """A flap with corners (n, 3) m stays in the tank when it leans most."""
     assert piston.waves is not None
-    low, high = boundary.solids[piston.number("obstacles")]
-    forward, hinge = piston.waves.forward, np.array(piston.waves.point)
-    top = max(float(reach) for reach in _heights(low, high, hinge))
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    forward = piston.waves.forward
+    top = float(high[2]) - piston.waves.point[2]
     leaning = piston.waves.trajectory.course()[:, 3]
     for face in boundary.closed_faces(3) if boundary.tank else ():
         axis, sign = "xyz".index(face[0]), 1.0 if face[1] == "+" else -1.0
@@ -68,7 +136,7 @@ def _check_flap(where: str, piston: Piston, boundary: Boundary) -> None:
             continue
         assert boundary.tank is not None
         wall = boundary.tank["-+".index(face[1])][axis]
-        side = (high if face[1] == "+" else low)[axis]
+        side = float((high if face[1] == "+" else low)[axis])
         reach = max(0.0, top * float((sign * forward[axis] * np.sin(leaning)).max()))
         if sign * (side - wall) + reach > 0.0:
             raise ValueError(
@@ -76,10 +144,6 @@ def _check_flap(where: str, piston: Piston, boundary: Boundary) -> None:
                 f"{reach:.3g} m towards the wall {face}, {sign * (wall - side):.3g} m away. Lower "
                 "the waves, or move the wall."
             )
-
-
-def _heights(low: Vector, high: Vector, hinge: Array) -> tuple[float, float]:
-    return high[2] - float(hinge[2]), low[2] - float(hinge[2])
 
 
 def check_damping(

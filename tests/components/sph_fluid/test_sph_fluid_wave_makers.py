@@ -177,6 +177,16 @@ def test_a_paddle_that_absorbs_stays_in_its_tank():
 
 NARROW = {"boundary__walls": ((-0.02, 0.0, 0.0), (0.8, 1.0, 0.4))}
 BOARDS = {"boundary__obstacles": [BOARD]}
+MOVED = {"boundary__motion": {"period": 1.0, "amplitude": [0.01, 0.0, 0.0]}}
+
+
+def box(lowest, highest):
+    return {"boundary__obstacles": [(lowest, highest)]}
+
+
+FAR_SIDE = box((0.8, 0.0, 0.0), (0.9, 1.0, 0.4)) | {
+    "boundary__walls": ((0.0, 0.0, 0.0), (1.1, 1.0, 0.4))
+}
 
 
 @pytest.mark.parametrize(
@@ -200,6 +210,14 @@ BOARDS = {"boundary__obstacles": [BOARD]}
         (SEA | {"order": 2}, {}, "order 2 is for regular waves; found it with a spectrum"),
         (REGULAR | {"order": 2, "period": 3.0}, {}, "H L²/h³ below 8π²/3 = 26.3.*found"),
         (REGULAR | {"heading": [0.0, 0.0, 1.0]}, {}, "waves.heading must be level"),
+        (REGULAR, FAR_SIDE, r"none behind; found it from -0.9 to -0.1 m .*Turn heading"),
+        (REGULAR | {"heading": [-1.0, 0.0, 0.0]}, {}, r"none behind; found it .*Turn heading"),
+        (REGULAR, box((-0.2, 0.0, 0.0), (-0.1, 1.0, 0.4)), "it 0.1 m away along heading"),
+        (REGULAR, box((-0.1, 0.0, 0.0), (0.0, 1.0, 0.27)), "from 0 m.*0.28 m; found.* 0.27 m"),
+        (REGULAR, box((-0.1, 0.0, 0.1), (0.0, 1.0, 0.4)), "found it from 0.1 to 0.4 m"),
+        (FLAP | {"hinge": [0.01, 0, 0]}, BOARDS, "within the paddle along heading, from -0.06 to"),
+        (FLAP | {"hinge": [-0.03, 0, 0.05]}, BOARDS, "a flap must end at its hinge.*to -0.1 m"),
+        (REGULAR, MOVED, "waves and boundary.motion do not go together"),
         (REGULAR | {"heading": [1.0, 1.0, 0.0]}, {}, "in the plane of x and z in two dimensions"),
     ],
 )
