@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 
-from quintet.components.sph_fluid.setup.trajectory import Instant
+from quintet.components.sph_fluid.setup.trajectory import Instant, growth
 from quintet.components.sph_fluid.setup.wave_theory import Paddle, bound_amplitude, transfer
 from quintet.interfaces.component import Array
 
@@ -49,17 +49,16 @@ class PaddleMotion:
 
     def growth(self, time: float) -> tuple[float, float, float]:
         """Share r of the motion at a time [s], 1, and its derivatives, 1/s and 1/s2."""
-        if time >= self.ramp:
-            return 1.0, 0.0, 0.0
-        x, ramp = time / self.ramp, self.ramp
-        r = x * x * x * (10.0 + x * (6.0 * x - 15.0))
-        dr, ddr = 30.0 * x * x * (1.0 - x) ** 2, 60.0 * x * (1.0 - x) * (1.0 - 2.0 * x)
-        return r, dr / ramp, ddr / (ramp * ramp)
+        return growth(time, self.ramp)
 
     def course(self) -> Array:
         """Places (n, 4): of regular waves in a period, of others in many; a straight line."""
         slowest, fastest = float(self.frequencies[0]), float(self.frequencies[-1])
-        regular = len(self.frequencies) <= 2
+        # Regular waves have one frequency, or a second that is exactly twice it.
+        regular = len(self.frequencies) == 1 or self.frequencies.tolist() == [
+            slowest,
+            2.0 * slowest,
+        ]
         span = 2.0 * math.pi / slowest * (1 if regular else SAMPLED)
         count = math.ceil(span * fastest / (2.0 * math.pi) * EACH)
         times = np.linspace(0.0, span, (8 if regular else 1) * count + 1)

@@ -35,11 +35,21 @@ class Trajectory(Protocol):
         """Places (n, 4) from time 0 to `end` in order, with the extremes along each axis."""
 
 
-class Harmonic:
-    """Amplitudes (4,) times r(t) sin(2πt/period), r from 0 to 1 within `ramp` [s].
+def growth(time: float, ramp: float) -> tuple[float, float, float]:
+    """Share r of a motion that grows within a ramp [s]: 1, and its derivatives, 1/s and 1/s2.
 
-    r = 10τ³ - 15τ⁴ + 6τ⁵ with τ = t/ramp, whose first two derivatives vanish at both ends.
+    r = 10τ³ - 15τ⁴ + 6τ⁵ with τ = time/ramp, whose first two derivatives vanish at both ends.
     """
+    if time >= ramp:
+        return 1.0, 0.0, 0.0
+    x = time / ramp
+    r = x * x * x * (10.0 + x * (6.0 * x - 15.0))
+    dr = 30.0 * x * x * (1.0 - x) ** 2 / ramp
+    return r, dr, 60.0 * x * (1.0 - x) * (1.0 - 2.0 * x) / ramp**2
+
+
+class Harmonic:
+    """Amplitudes (4,) times r(t) sin(2πt/period), r of `growth` within `ramp` [s]."""
 
     end = math.inf
 
@@ -50,12 +60,7 @@ class Harmonic:
         """Place, velocity and acceleration at a time [s]."""
         omega = self.frequency
         s, c = math.sin(omega * time), math.cos(omega * time)
-        r, dr, ddr = 1.0, 0.0, 0.0
-        if time < self.ramp:
-            x = time / self.ramp
-            r = x * x * x * (10.0 + x * (6.0 * x - 15.0))
-            dr = 30.0 * x * x * (1.0 - x) ** 2 / self.ramp
-            ddr = 60.0 * x * (1.0 - x) * (1.0 - 2.0 * x) / self.ramp**2
+        r, dr, ddr = growth(time, self.ramp)
         a = self.amplitude
         return Instant(
             a * (r * s),

@@ -1,5 +1,6 @@
 """Waves that a paddle makes: regular ones, or those of a spectrum."""
 
+import cmath
 import math
 from functools import lru_cache
 from typing import TYPE_CHECKING, Annotated, Literal
@@ -45,7 +46,7 @@ class Waves:
     order : 1
         Of the theory; 2 is for regular waves.
     phase : rad
-        Of regular waves: the paddle moves as sin(2πt/period + phase).
+        Of regular waves: the paddle moves as sin(2πt/period + phase); 0 if not given.
     spectrum
         Of irregular waves.
     significant_height : m
@@ -53,11 +54,11 @@ class Waves:
     peak_period : s
         Of irregular waves.
     peak_enhancement : 1
-        γ of the JONSWAP spectrum.
+        γ of the JONSWAP spectrum; 3.3 if not given.
     components
-        Number of waves that make a spectrum.
+        Number of waves that make a spectrum; 50 if not given.
     seed
-        Of the phases and frequencies of these.
+        Of the phases and frequencies of these; 0 if not given.
     ramp : s
         In which the motion begins; one period, or one peak period, if not given.
     heading : 1
@@ -77,13 +78,13 @@ class Waves:
     height: Positive | None = None
     period: Positive | None = None
     order: Literal[1, 2] = 1
-    phase: Number = 0.0
+    phase: Number | None = None
     spectrum: Literal["jonswap", "pierson_moskowitz"] | None = None
     significant_height: Positive | None = None
     peak_period: Positive | None = None
-    peak_enhancement: Enhancement = 3.3
-    components: Components = 50
-    seed: NonNegativeInt = 0
+    peak_enhancement: Enhancement | None = None
+    components: Components | None = None
+    seed: NonNegativeInt | None = None
     ramp: Positive | None = None
     heading: Vector = (1.0, 0.0, 0.0)
     hinge: Vector | None = None
@@ -117,17 +118,28 @@ class Waves:
 
     def _check_keys(self) -> None:
         regular = {"height": self.height, "period": self.period}
-        sea = {
+        irregular = {
             "spectrum": self.spectrum,
             "significant_height": self.significant_height,
             "peak_period": self.peak_period,
         }
-        keys_set = [{k for k, v in keys.items() if v is not None} for keys in (regular, sea)]
-        if keys_set not in ([set(regular), set()], [set(), set(sea)]):
+        keys_set = [{k for k, v in keys.items() if v is not None} for keys in (regular, irregular)]
+        if keys_set not in ([set(regular), set()], [set(), set(irregular)]):
+            names = ", ".join(sorted(set().union(*keys_set))) or "none of them"
             raise ValueError(
                 "waves must have height and period, or spectrum, significant_height and "
-                f"peak_period; found {', '.join(sorted(set().union(*keys_set))) or 'none of them'}. "
-                "Give all keys of one kind of waves."
+                f"peak_period; found {names}. Give all keys of one kind of waves."
+            )
+        unused = {"phase": self.phase}
+        if self.spectrum is None:
+            unused = {"seed": self.seed, "components": self.components}
+        if self.spectrum != "jonswap":
+            unused["peak_enhancement"] = self.peak_enhancement
+        if names := ", ".join(name for name, value in unused.items() if value is not None):
+            kind = "regular waves" if self.spectrum is None else f"the spectrum {self.spectrum}"
+            raise ValueError(
+                "waves.phase is for regular waves, seed and components for a spectrum, and "
+                f"peak_enhancement for jonswap; found {names} with {kind}. Remove {names}."
             )
         if self.spectrum is not None and self.order == 2:
             raise ValueError(
@@ -229,20 +241,20 @@ def _paddle_motion(waves: Waves) -> "PaddleMotion":
     if waves.height is not None:
         omega = 2.0 * math.pi / waves.longest_period
         stroke = waves.height / float(transfer(omega, paddle, 0)[1][0].real)
-        turned = complex(math.cos(waves.phase), math.sin(waves.phase))
-        amplitudes, frequencies = [0.5 * stroke * turned], [omega]
+        rotation = cmath.exp(1j * (waves.phase or 0.0))
+        amplitudes, frequencies = [0.5 * stroke * rotation], [omega]
         if waves.order == 2:
-            amplitudes.append(second_order(0.5 * stroke, omega, paddle) * turned * turned)
+            amplitudes.append(second_order(0.5 * stroke, omega, paddle) * rotation * rotation)
             frequencies.append(2.0 * omega)
     else:
-        enhancement = waves.peak_enhancement if waves.spectrum == "jonswap" else 1.0
-        sea = (waves.significant, waves.longest_period, enhancement)
-        rows = zip(*components(*sea, waves.components, waves.seed), strict=True)
+        enhancement = (waves.peak_enhancement or 3.3) if waves.spectrum == "jonswap" else 1.0
+        statistics = (waves.significant, waves.longest_period, enhancement)
+        spectrum = components(*statistics, waves.components or 50, waves.seed or 0)
+        rows = zip(*spectrum, strict=True)
         amplitudes, frequencies = [], []
         for amplitude, omega, phase in (map(float, row) for row in rows):
             factor = float(transfer(omega, paddle, 0)[1][0].real)
-            turned = complex(math.cos(phase), math.sin(phase))
-            amplitudes.append(amplitude / factor * turned)
+            amplitudes.append(amplitude / factor * cmath.exp(1j * phase))
             frequencies.append(omega)
     vector = np.array([*waves.forward, 0.0])
     if paddle.hinge is not None:

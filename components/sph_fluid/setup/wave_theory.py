@@ -18,6 +18,7 @@ that of Madsen (J. Geophys. Res. 76 (1971) 8672) in long waves, to which the Dua
 
 import cmath
 import math
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -28,6 +29,12 @@ MODES = 40  # evanescent modes
 NODES = 400  # of Gauss and Legendre over the depth
 ITERATIONS = 60
 BREAKING = 0.142  # steepness H/L tanh⁻¹(kh) at which regular waves break (Miche 1944)
+
+
+@lru_cache(maxsize=1)
+def _gauss_nodes() -> tuple[Array, Array]:
+    """Nodes and weights (n,) of Gauss and Legendre from -1 to 1."""
+    return np.polynomial.legendre.leggauss(NODES)
 
 
 class Paddle(NamedTuple):
@@ -52,7 +59,7 @@ class Paddle(NamedTuple):
     @property
     def nodes(self) -> tuple[Array, Array]:
         """Heights (n,) m and weights (n,) m of an integral over the depth, split at a kink."""
-        x, weight = np.polynomial.legendre.leggauss(NODES)
+        x, weight = _gauss_nodes()
         kink = -self.depth if self.hinge is None else max(-self.hinge, -self.depth)
         parts = [(-self.depth, kink), (kink, 0.0)] if kink > -self.depth else [(kink, 0.0)]
         heights = [0.5 * (a + b) + 0.5 * (b - a) * x for a, b in parts]
@@ -131,20 +138,20 @@ def second_order(amplitude: float, omega: float, paddle: Paddle) -> complex:
     z, weight = paddle.nodes
     test = weight * _profile(complex(free), z, h).real
     f, slope, nu = paddle.shape(z), paddle.slope(z), omega * omega / g
-    lacking = 0.0j
+    remainder = 0.0j
     for number, phase in zip(k.tolist(), phi.tolist(), strict=True):
         profile = _profile(number, z, h)
         rise = number * _profile(number, z, h, -1.0)
         moved = slope * rise + f * number * number * profile
-        lacking += 0.5 * amplitude * phase * (test * moved).sum()
-    both = k[:, np.newaxis] + k  # wave numbers of the waves forced by pairs of modes
+        remainder += 0.5 * amplitude * phase * (test * moved).sum()
+    sums = k[:, np.newaxis] + k  # wave numbers of the waves forced by pairs of modes
     squares = k * k
     forcing = 0.5j * omega * phi[:, np.newaxis] * phi
     forcing *= 0.5 * (squares[:, np.newaxis] + squares) + 2.0 * k[:, np.newaxis] * k - 3.0 * nu * nu
-    level = both * np.tanh(both * h)
+    level = sums * np.tanh(sums * h)
     bound = forcing / (g * level - 4.0 * omega * omega)
     # ∫ cosh K(z+h) cosh k(z+h) dz over both values at z = 0, with 4ω² = g k tanh kh.
-    shared = (level - free * math.tanh(free * h)) / (both * both - free * free)
-    lacking += (1j * both * bound * shared).sum()
+    shared = (level - free * math.tanh(free * h)) / (sums * sums - free * free)
+    remainder += (1j * sums * bound * shared).sum()
     # Of X = A sin ωt, a quarter of a period later, and in Im(Y e^{2iωt}).
-    return complex(lacking / (2.0 * omega * (test * f).sum()))
+    return complex(remainder / (2.0 * omega * (test * f).sum()))

@@ -39,6 +39,7 @@ SEA = {
     "seed": 3,
     "components": 20,
 }
+MOSKOWITZ = SEA | {"spectrum": "pierson_moskowitz", "peak_enhancement": 2.0}
 FLAP = REGULAR | {"paddle": "flap", "hinge": [-0.03, 0.0, 0.0]}
 ZONE = {"lowest": [0.4, 0.0, 0.0], "highest": [0.8, 1.0, 0.4], "towards": "x+"}
 
@@ -83,6 +84,15 @@ def test_irregular_waves_have_the_bits_of_their_seed():
     paths = [fluid_params(**settings(SEA | {"seed": seed})) for seed in (3, 3, 4)]
     first, again, other = (p.boundary.pistons[0].waves.trajectory.at(7.7).place for p in paths)
     assert np.array_equal(first, again) and not np.array_equal(first, other)
+
+
+def test_a_sea_of_two_components_is_followed_until_both_are_at_their_extreme():
+    """Their frequencies have no common period: the course reaches the sum of the amplitudes."""
+    waves = fluid_params(**settings(SEA | {"components": 2})).boundary.pistons[0].waves
+    motion = waves.trajectory
+    most = float(np.abs(motion.amplitudes).sum())
+    assert motion.frequencies[1] != 2.0 * motion.frequencies[0]
+    assert motion.course()[:, 0].max() == pytest.approx(most, rel=0.02)
 
 
 @pytest.mark.parametrize(
@@ -207,6 +217,10 @@ FAR_SIDE = box((0.8, 0.0, 0.0), (0.9, 1.0, 0.4)) | {
         (FLAP, {}, r"must stay on the wall z- that it touches"),
         (REGULAR | {"period": None}, {}, r"must have height and period, or spectrum.*found height"),
         (REGULAR | SEA, {}, "Give all keys of one kind of waves"),
+        (SEA | {"phase": 0.3}, {}, "found phase with the spectrum jonswap. Remove phase"),
+        (REGULAR | {"seed": 0, "components": 9}, {}, "found seed, components with regular waves"),
+        (REGULAR | {"peak_enhancement": 2.0}, {}, "found peak_enhancement with regular waves"),
+        (MOSKOWITZ, {}, "found peak_enhancement with the spectrum pierson_moskowitz"),
         (SEA | {"order": 2}, {}, "order 2 is for regular waves; found it with a spectrum"),
         (REGULAR | {"order": 2, "period": 3.0}, {}, "H L²/h³ below 8π²/3 = 26.3.*found"),
         (REGULAR | {"heading": [0.0, 0.0, 1.0]}, {}, "waves.heading must be level"),
