@@ -88,19 +88,33 @@ class ForeseenSurface:
     ) -> None:
         self.motion = motion
         first = motion.parts[:1] if height is not None else motion.parts
-        self.parts = []
+        self.parts: list[tuple[complex, complex, float, float]] = []
         for amplitude, omega in first:
             k, factors = transfer(omega, paddle)
-            reached = complex((factors * np.exp(-1j * k * distance)).sum())
-            self.parts.append((1j * amplitude * reached, omega))
+            reached = 1j * amplitude * factors * np.exp(-1j * k * distance)
+            wave, beside = complex(reached[0]), complex(reached[1:].sum())
+            self.parts.append((wave, beside, float(k[0].real), omega))
+        self.bound = 0.0j, 0.0, 0.0
         if height is not None:
             amplitude, omega = first[0]
-            number = float(k[0].real)
+            number = self.parts[0][2]
             phase = cmath.phase(amplitude) - number * distance
             bound = bound_amplitude(height, number, paddle.depth)
-            self.parts.append((1j * bound * cmath.exp(2j * phase), 2.0 * omega))
+            self.bound = 1j * bound * cmath.exp(2j * phase), 2.0 * number, 2.0 * omega
 
-    def at(self, time: float) -> float:
-        """Elevation above still water at a time [s]; m."""
+    def at(self, time: float, displacement: float = 0.0) -> float:
+        """Elevation above still water at a time [s] before a paddle that is displaced [m]; m.
+
+        Waves run in the tank, and are seen at the displaced place; evanescent modes belong to the
+        paddle, and go with it. A bound harmonic is of the square of the waves that grow.
+        """
         r, _, _ = self.motion.growth(time)
-        return r * math.fsum((a * cmath.exp(1j * omega * time)).imag for a, omega in self.parts)
+        first = math.fsum(
+            (
+                (wave * cmath.exp(-1j * k * displacement) + beside) * cmath.exp(1j * omega * time)
+            ).imag
+            for wave, beside, k, omega in self.parts
+        )
+        amplitude, k, omega = self.bound
+        second = (amplitude * cmath.exp(1j * (omega * time - k * displacement))).imag
+        return r * first + r * r * second

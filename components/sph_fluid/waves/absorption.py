@@ -8,9 +8,11 @@ Waterway Port Coast. Ocean Eng. 126 (2000) 88, in shallow water; Altomare et al.
     dX/dt = dX_I/dt - √(g/h) (η - η_I)
 
 Levels are read at the begin of each step, two smoothing lengths in front of the paddle's face,
-where the kernel no longer feels it. They are means over spots across the paddle.
+where the kernel no longer feels it. They are means over spots across the paddle; their difference
+from theory counts up to the (significant) height of the waves.
 """
 
+import itertools
 import math
 
 import numpy as np
@@ -20,7 +22,9 @@ from quintet.components.sph_fluid.constants import constants
 from quintet.components.sph_fluid.gauges.levels import Levels
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.ranks.method import Ranks
+from quintet.components.sph_fluid.setup.geometry import ROUNDING
 from quintet.components.sph_fluid.setup.paddle_motion import ForeseenSurface
+from quintet.components.sph_fluid.setup.piston_checks import part_corners
 from quintet.components.sph_fluid.state import Array, State
 from quintet.interfaces.errors import StepError
 
@@ -38,6 +42,7 @@ class Absorber:
         assert waves is not None
         distance = AHEAD * constants(params).smoothing.length
         self.forward, self.level = waves.forward, waves.level  # (3,) 1; m
+        self.highest = waves.significant  # m
         self.gain = math.sqrt(waves.gravity / waves.depth)  # 1/s
         self.foreseen = ForeseenSurface(waves.trajectory, waves.water, distance, waves.height)
         self.part, self.room = params.boundary.pistons[number].part, _room(params, number)  # m
@@ -50,7 +55,7 @@ class Absorber:
         Raises
         ------
         StepError
-            Where the paddle has left its tank.
+            Where the paddle has left its tank, or there is no water in front of it.
         """
         if not self.room[0] <= displacement <= self.room[1]:
             raise StepError(
@@ -59,8 +64,16 @@ class Absorber:
                 f"{self.room[1]:.3g} m. Move the walls, or lower the waves."
             )
         self.levels.place(self.spots + displacement * self.forward[:2])
-        elevation = float(self.levels.heights(state).mean()) - self.level
-        return -self.gain * (elevation - self.foreseen.at(time))
+        levels = self.levels.heights(state)
+        if (levels <= self.levels.floor).any():
+            x, y = self.levels.spots[int(np.argmin(levels))].tolist()
+            raise StepError(
+                f"boundary.pistons: {self.part} absorbs waves by the water in front of it; found "
+                f"none at x = {x:.4g} m, y = {y:.4g} m. Lower the waves, or leave absorption out."
+            )
+        foreseen = self.foreseen.at(time, displacement)
+        difference = float(levels.mean()) - self.level - foreseen
+        return -self.gain * min(max(difference, -self.highest), self.highest)
 
 
 def _spots(params: SphFluidParams, number: int, distance: float) -> Array:
@@ -69,7 +82,7 @@ def _spots(params: SphFluidParams, number: int, distance: float) -> Array:
     assert piston.waves is not None
     forward = piston.waves.forward[:2]
     along = np.array([-forward[1], forward[0]])
-    corners = _corners(params, number)
+    corners = part_corners(piston, params.boundary)
     lows, highs = zip(*params.extents, strict=True)
     water = np.array([np.min(lows, axis=0)[:2], np.max(highs, axis=0)[:2]])
     face = float((corners[:, 0] * forward[0] + corners[:, 1] * forward[1]).max()) + distance
@@ -86,10 +99,10 @@ def _spots(params: SphFluidParams, number: int, distance: float) -> Array:
 
 
 def _room(params: SphFluidParams, number: int) -> tuple[float, float]:
-    """Least and greatest displacement [m] that keep a paddle inside the closed walls."""
+    """Least and greatest displacement [m] of a paddle between walls and obstacles that stand."""
     piston, boundary = params.boundary.pistons[number], params.boundary
     assert piston.waves is not None
-    corners, room = _corners(params, number), [-math.inf, math.inf]
+    corners, room = part_corners(piston, params.boundary), [-math.inf, math.inf]
     for face in params.closed_faces if boundary.tank else ():
         axis, is_upper = "xyz".index(face[0]), face[1] == "+"
         part = float(piston.waves.forward[axis])
@@ -100,16 +113,20 @@ def _room(params: SphFluidParams, number: int) -> tuple[float, float]:
         way = (boundary.tank[int(is_upper)][axis] - float(side)) / part
         end = int(is_upper == (part > 0.0))
         room[end] = min(room[end], way) if end else max(room[end], way)
+    along = np.array([-piston.waves.forward[1], piston.waves.forward[0], 0.0])
+    axes = np.stack([piston.waves.forward, along, np.array([0.0, 0.0, 1.0])], axis=1)
+    moved = [other.number("obstacles") for other in boundary.pistons]
+    low, high = (corners @ axes).min(axis=0), (corners @ axes).max(axis=0)
+    little = ROUNDING * params.spacing
+    across = [2] if params.dimensions == 2 else [1, 2]
+    for solid, box in enumerate(boundary.solids):
+        ends = np.array(list(itertools.product(*zip(*box, strict=True)))) @ axes
+        least, most = ends.min(axis=0), ends.max(axis=0)
+        beside = np.minimum(high, most) - np.maximum(low, least) <= little
+        if solid in moved or beside[across].any() or not beside[0]:
+            continue
+        if least[0] >= high[0] - little:
+            room[1] = min(room[1], float(least[0] - high[0]))
+        else:
+            room[0] = max(room[0], float(most[0] - low[0]))
     return room[0], room[1]
-
-
-def _corners(params: SphFluidParams, number: int) -> Array:
-    """Corners (n, 3) m of a paddle where the scene has it."""
-    piston, boundary = params.boundary.pistons[number], params.boundary
-    if (box := piston.number("obstacles")) >= 0:
-        low, high = boundary.solids[box]
-        return np.array([[x, y, low[2]] for x in (low[0], high[0]) for y in (low[1], high[1])])
-    # Left out of scenes without boundaries from files.
-    from quintet.components.sph_fluid.setup.mesh_surfaces import placed
-
-    return np.asarray(placed(boundary.meshes[piston.number("meshes")]).corner.reshape(-1, 3))

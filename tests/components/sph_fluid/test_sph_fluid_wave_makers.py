@@ -185,6 +185,23 @@ def test_a_paddle_that_absorbs_stays_in_its_tank():
         fluid.step(2e-4)
 
 
+def test_obstacles_that_stand_bound_the_way_of_a_paddle_that_absorbs():
+    behind = ((-0.25, 0.0, 0.0), (-0.2, 1.0, 0.4))
+    above = ((0.1, 0.0, 0.5), (0.2, 1.0, 0.6))
+    fluid = fluid_with(REGULAR | {"absorption": True}, boundary__obstacles=[BLOCK, behind, above])
+    fluid.pistons.parts[0].added = -0.11
+    with pytest.raises(StepError, match=r"displaced by -0.11 m, with room from -0.1 to 0.8 m"):
+        fluid.step(2e-4)
+
+
+def test_a_paddle_that_absorbs_needs_water_in_front_of_it():
+    fluid = fluid_with(REGULAR | {"absorption": True})
+    state = fluid.state
+    state.position_density[: state.fluid, 0] += 0.3
+    with pytest.raises(StepError, match=r"absorbs waves by the water in front of it; found none"):
+        fluid.step(2e-4)
+
+
 NARROW = {"boundary__walls": ((-0.02, 0.0, 0.0), (0.8, 1.0, 0.4))}
 BOARDS = {"boundary__obstacles": [BOARD]}
 MOVED = {"boundary__motion": {"period": 1.0, "amplitude": [0.01, 0.0, 0.0]}}

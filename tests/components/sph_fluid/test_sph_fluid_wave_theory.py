@@ -123,3 +123,16 @@ def test_the_surface_far_from_a_paddle_is_the_wave():
         phase = omega * time - number * distance
         expected = 0.05 * math.cos(phase) + second * math.cos(2.0 * phase)
         assert surface.at(time) == pytest.approx(expected, abs=1e-6)
+
+
+def test_the_surface_is_foreseen_where_a_paddle_has_gone_and_as_its_motion_grows():
+    omega, paddle, height = 2.0 * math.pi / 1.1, Paddle(DEPTH, None, G), 0.1
+    k, factors = transfer(omega, paddle)
+    amplitude, number = 0.5 * height / factors[0].real, k[0].real
+    motion = PaddleMotion(np.array([1.0, 0, 0, 0]), np.array([amplitude]), np.array([omega]), 2.0)
+    surface = ForeseenSurface(motion, paddle, 3.0, height)
+    second = bound_amplitude(height, number, DEPTH)
+    for time, displacement in ((2.5, 0.08), (2.9, -0.05), (1.0, 0.02)):
+        phase, r = omega * time - number * (3.0 + displacement), motion.growth(time)[0]
+        expected = 0.05 * r * math.cos(phase) + second * r * r * math.cos(2.0 * phase)
+        assert surface.at(time, displacement) == pytest.approx(expected, abs=1e-5)
