@@ -304,9 +304,17 @@ class SphFluidParams:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What a user should read of the mass of particles and of viscosity."""
+        """What a user should read of the mass of particles, viscosity, meshes and absorption."""
         masses = mass_notes(self.fluid, self.spacing, self.dimensions)
-        return *masses, *self.viscosity.notes, *self._mesh_notes()
+        return *masses, *self.viscosity.notes, *self._mesh_notes(), *self._wave_notes()
+
+    def _wave_notes(self) -> tuple[str, ...]:
+        if not any(piston.absorbs for piston in self.boundary.pistons):
+            return ()
+        # Left out of scenes without wave makers.
+        from quintet.components.sph_fluid.setup.wave_checks import absorption_notes
+
+        return absorption_notes(self.boundary)
 
     def _mesh_notes(self) -> tuple[str, ...]:
         if not self.boundary.meshes:

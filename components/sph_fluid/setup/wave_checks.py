@@ -11,10 +11,12 @@ from quintet.components.sph_fluid.setup.geometry import ROUNDING
 from quintet.components.sph_fluid.setup.piston_checks import part_corners
 from quintet.components.sph_fluid.setup.pistons import Piston
 from quintet.components.sph_fluid.setup.wave_maker import LEAST_PARTICLES, Waves
+from quintet.components.sph_fluid.setup.wave_theory import wave_number
 from quintet.interfaces.component import Array
 from quintet.interfaces.params import Vector
 
 HALF = 0.5  # of a spacing: how far the water of a scene may be from that of the theory
+DEEP = 1.5  # kh above which a paddle reflects 0.17 or more of what it should absorb
 SAME = 1e-6  # of gravity
 
 
@@ -144,6 +146,23 @@ def _check_flap(where: str, piston: Piston, boundary: Boundary, corners: Array) 
                 f"{reach:.3g} m towards the wall {face}, {sign * (wall - side):.3g} m away. Lower "
                 "the waves, or move the wall."
             )
+
+
+def absorption_notes(boundary: Boundary) -> tuple[str, ...]:
+    """What a user should know of paddles that absorb waves for which their law is poor."""
+    notes = []
+    for number, piston in enumerate(boundary.pistons):
+        if piston.waves is None or not piston.absorbs:
+            continue
+        waves = piston.waves
+        omega = 2.0 * math.pi / waves.longest_period
+        kh = wave_number(omega, waves.depth, waves.gravity) * waves.depth
+        if kh > DEEP:
+            notes.append(
+                f"boundary.pistons[{number}].waves.absorption is that of long waves; of waves with "
+                f"kh above {DEEP:g}, as here {kh:.3g}, the paddle sends back 17 % or more"
+            )
+    return tuple(notes)
 
 
 def check_damping(

@@ -202,6 +202,14 @@ def test_a_paddle_that_absorbs_needs_water_in_front_of_it():
         fluid.step(2e-4)
 
 
+@pytest.mark.parametrize(("period", "expected"), [(1.0, 0), (0.7, 1)])
+def test_a_note_says_that_absorption_of_short_waves_is_poor(period, expected):
+    waves = REGULAR | {"absorption": True, "period": period}
+    notes = [n for n in fluid_params(**settings(waves)).notes if "absorption" in n]
+    assert len(notes) == expected
+    assert all("kh above 1.5, as here 1.75," in note for note in notes)
+
+
 NARROW = {"boundary__walls": ((-0.02, 0.0, 0.0), (0.8, 1.0, 0.4))}
 BOARDS = {"boundary__obstacles": [BOARD]}
 MOVED = {"boundary__motion": {"period": 1.0, "amplitude": [0.01, 0.0, 0.0]}}
