@@ -63,6 +63,11 @@ def _check_water(
             f"{where}.waves must have the depth and the bottom of the water, {level - bottom:g} m "
             f"and {bottom:g} m; found {waves.depth:g} m and {waves.bottom:g} m. Correct them."
         )
+    if waves.absorption and abs(waves.level - level) > ROUNDING * spacing:
+        raise ValueError(
+            f"{where}.waves with absorption must have the level of the water exactly, {level:g} m, "
+            f"or the paddle takes the difference for a wave; found {waves.level:g} m. Correct it."
+        )
     if math.hypot(gravity[0], gravity[1], gravity[2] + waves.gravity) > SAME * waves.gravity:
         raise ValueError(
             f"{where}.waves.gravity must be that of the fluid, downwards along z; found "
