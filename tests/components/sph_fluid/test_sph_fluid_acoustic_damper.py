@@ -126,8 +126,12 @@ def test_the_steepest_wave_is_that_of_lattices(kernel: Any) -> None:
 @pytest.mark.parametrize(("share", "calm"), [(0.97, True), (1.06, False)])
 @pytest.mark.parametrize(
     ("kernel", "steepest", "size"),
-    [("wendland", 1.127, 0.3), ("wendland", 1.127, 1.0), ("wendland", 1.127, 2.0)]
-    + [("quintic", 1.299, 1.0)],
+    [
+        ("wendland", 1.127, 0.3),
+        ("wendland", 1.127, 1.0),
+        ("wendland", 1.127, 2.0),
+        ("quintic", 1.299, 1.0),
+    ],
 )
 def test_step_limit_is_where_the_steepest_sound_grows(
     kernel: Any, steepest: float, size: float, share: float, calm: bool
