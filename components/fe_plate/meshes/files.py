@@ -55,7 +55,8 @@ def read(file: str, coincident: str = "refuse", parts: tuple[int | str, ...] = (
     if _kind(name, source) == FOUR_NODES:
         source = with_midside_nodes(name, source)
     solids = [block.data for block in source.cells if block.type in SOLIDS and len(block.data)]
-    corner, points = np.concatenate(solids).astype(np.int64), source.points
+    corner: Whole = np.concatenate(solids).astype(np.int64)
+    points = source.points
     notes = [*source.notes, *_left_out(name, source, np.unique(corner))]
     same = np.arange(len(points))
     if coincident != "keep":
@@ -81,15 +82,16 @@ def read(file: str, coincident: str = "refuse", parts: tuple[int | str, ...] = (
                 f"mesh {name}: its set {key} of faces or edges names the {len(sets[key])} nodes on "
                 "them."
             )
-    if corner.shape[1] == NODES:
-        notes += _incomplete(name, corner, sets)
+    notes += _incomplete(name, corner, sets)
     groups = _groups(name, source, notes)
     velocity = None if source.velocity is None else source.velocity[used]
     return FileMesh(points[used], corner, sets, groups, tuple(notes), velocity)
 
 
 def _incomplete(name: str, corner: Whole, sets: dict[str, Whole]) -> list[str]:
-    """Notes of sets that hold faces by their corners alone."""
+    """Notes of sets that hold faces of tetrahedra by their corners alone."""
+    if corner.shape[1] != NODES:
+        return []
     counts = {key: incomplete_faces(corner, nodes) for key, nodes in sets.items()}
     return [
         f"mesh {name}: its set {key} has all corners of {faces} outer faces, but lacks {lacking} "
