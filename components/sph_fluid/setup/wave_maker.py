@@ -43,7 +43,7 @@ class Waves:
         Of regular waves, from trough to crest.
     period : s
         Of regular waves.
-    order : 1
+    order
         Of the theory; 2 is for regular waves.
     phase : rad
         Of regular waves: the paddle moves as sin(2πt/period + phase); 0 if not given.
@@ -55,9 +55,9 @@ class Waves:
         Of irregular waves.
     peak_enhancement : 1
         γ of the JONSWAP spectrum; 3.3 if not given.
-    components
+    components : 1
         Number of waves that make a spectrum; 50 if not given.
-    seed
+    seed : 1
         Of the phases and frequencies of these; 0 if not given.
     ramp : s
         In which the motion begins; one period, or one peak period, if not given.

@@ -74,7 +74,7 @@ def test_good_parameters_have_no_mistakes() -> None:
             {"acoustic_damper": -0.5},
             r"water.acoustic_damper should be greater than or equal to 0; found -0.5",
         ),
-        ({"kernel": "quintic"}, r"water.kernel .* found 'quintic'"),
+        ({"kernel": "gaussian"}, r"water.kernel .* found 'gaussian'"),
     ],
 )
 def test_mistake_says_where_rule_value_and_cure(changes: dict[str, Any], sentence: str) -> None:
