@@ -1,6 +1,5 @@
 """All arrays of a structure: what stays as it was built, and what moves."""
 
-import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -23,9 +22,8 @@ POINT_ROWS = 14
 # Rows of the springs that hold the hourglass patterns of elements with one point.
 SPRING, SPRING_ENERGY = 0, 12  # 12 rows N, J
 SPRING_ROWS = 13
-# Tetrahedra with ten nodes: their four points stand at λ = OWN of a corner and REST of the others.
-OWN, REST = 0.25 + 0.15 * math.sqrt(5.0), 0.25 - 0.05 * math.sqrt(5.0)
-NODE_SHARES = np.array([1.0 / 36.0] * 4 + [4.0 / 27.0] * 6)  # of the element's mass at each node
+# Of tetrahedra with ten nodes: of the element's mass at each node.
+NODE_SHARES = np.array([1.0 / 36.0] * 4 + [4.0 / 27.0] * 6)
 FEW = 0.25  # of all points: their numbers are taken one by one, without a copy of the whole row
 
 

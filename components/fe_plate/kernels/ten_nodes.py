@@ -50,13 +50,12 @@ from quintet.components.fe_plate.kernels.geometry import cross, dot
 from quintet.components.fe_plate.kernels.material import advance_material
 from quintet.components.fe_plate.kernels.several_points import compare_volumes, erode
 from quintet.components.fe_plate.laws import to_middle
+from quintet.components.fe_plate.meshes.four_points import OWN, REST
 from quintet.components.fe_plate.state import (
     ACTIVE,
     LANES,
     NODE_SHARES,
-    OWN,
     POINT_ROWS,
-    REST,
     STRAIN,
     Model,
     Resistance,

@@ -7,7 +7,7 @@ of the edges 01, 12, 20, 03, 13 and 23, as in VTK, Abaqus, Nastran and LS-DYNA.
 import numpy as np
 
 from quintet.components.fe_plate.meshes.arrays import Array, Whole
-from quintet.components.fe_plate.state import OWN, REST
+from quintet.components.fe_plate.meshes.four_points import OWN, REST
 from quintet.interfaces.errors import SceneError
 
 NODES = 10
