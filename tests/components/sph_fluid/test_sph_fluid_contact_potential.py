@@ -71,7 +71,12 @@ def test_pressure_between_lattices_is_the_tabled_one(
 
 
 @pytest.mark.parametrize(
-    ("kernel", "exponent"), [*(("cubic", n) for n in range(1, 9)), ("wendland", 4), ("quintic", 4)]
+    ("kernel", "exponent"),
+    [
+        *(("cubic", n) for n in range(1, 9)),
+        ("wendland", 4),
+        pytest.param("quintic", 4, marks=pytest.mark.full),
+    ],
 )
 def test_force_on_a_plate_is_that_of_the_lattices(
     drop: Make, plate: Join, kernel: str, exponent: int
