@@ -152,7 +152,7 @@ class DemBodies(Component):
             diagnostics.check(self.state)
 
     def give(self, wanted: Keys) -> Fields:
-        """Copy out the motion of all bodies, and what is wanted of contacts and of the front."""
+        """Copy out the motion of all bodies, and the contacts and the front if they are wanted."""
         fields = dict[str, Array]()
         if not wanted.isdisjoint(CONTACT_FIELDS):
             self._begin()

@@ -154,14 +154,10 @@ def _component(
     manifest = _manifest(where, kind, mistakes)
     if manifest is None:
         return None
-    if common.ranks > 1 and not manifest.ranks:
-        mistakes.append(
-            f"{where}.ranks must be 1, for kind {kind} computes on one rank; found "
-            f"{common.ranks}. Give it threads."
-        )
-        return None
-    if wrong_device := _wrong_device(where, common, manifest):
-        mistakes.append(wrong_device)
+    if sentence := _wrong_ranks(where, kind, common, manifest) or _wrong_device(
+        where, common, manifest
+    ):
+        mistakes.append(sentence)
         return None
     try:
         if partners and manifest.complete:
@@ -188,6 +184,16 @@ def _component(
         name, kind, manifest, keys, params, takes, gives, common.threads, common.ranks, plan, begun,
         device=common.device,
     )  # fmt: skip
+
+
+def _wrong_ranks(where: str, kind: str, common: ComponentKeys, manifest: Manifest) -> str:
+    """Sentence about several ranks of a kind that computes on one; "" if it can."""
+    if common.ranks == 1 or manifest.ranks:
+        return ""
+    return (
+        f"{where}.ranks must be 1, for kind {kind} computes on one rank; found {common.ranks}. "
+        "Give it threads."
+    )
 
 
 def _wrong_device(where: str, common: ComponentKeys, manifest: Manifest) -> str:

@@ -68,7 +68,7 @@ POINTS, NODES = 4, 10  # of an element
 PER = LANES // POINTS  # elements in a block
 X, V = 0, 30  # rows of the nodes of an element, 3a + d: m, m/s; forces in place of X
 TRACE, NORM = 60, 61  # of S, 1/m2
-WEIGHT = 1.0 / 24.0  # of a point, in the volume of which the reference element has 1/6
+WEIGHT = 1.0 / 24.0  # of each of four points; the reference element has a volume of 1/6
 LAMBDA = np.full((4, LANES), REST)
 LAMBDA[np.arange(LANES) % POINTS, np.arange(LANES)] = OWN
 # θ of a corner at its own point and at others, of a midside node at those of its ends and others.

@@ -185,7 +185,10 @@ def _left_out(name: str, source: Source, used: Whole) -> list[str]:
         )
     if not +marks:
         return []
-    return [f"mesh {name}: {_listed(+marks)} lie on its solids; they mark nodes, and bear nothing."]
+    return [
+        f"mesh {name}: {_listed(+marks)} lie on faces of its solids: they name nodes in sets, and "
+        "are no elements."
+    ]
 
 
 def _listed(kinds: Counter[str]) -> str:

@@ -72,7 +72,7 @@ static int add_near(
     return count;
 }
 
-/* List what is nearer than a reach: for the first group of both, for others of the first alone.
+/* List neighbours within a reach: for the first group of both, for others of the first alone.
 
    Others look from a point of their own. Rows whose lists are too short count on: the greatest
    count tells how long they must be. */

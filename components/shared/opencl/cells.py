@@ -91,7 +91,7 @@ class Cells:
         self, position: DeviceArray, look: DeviceArray | None, split: int, count: int, grid: Grid,
         starts: tuple[DeviceArray, DeviceArray], reach: float, extremes: DeviceArray,
     ) -> NearLists:  # fmt: skip
-        """List what is nearer than a reach [m], of rows sorted by cell.
+        """List the neighbours within a reach [m] of each row; rows are sorted by cell.
 
         Parameters
         ----------

@@ -56,7 +56,7 @@ class Program:
         function : function
             Of Python, or as numba compiles it.
         *arguments
-            An example of each, of which the types count, and which fields are None.
+            An example of each: its type counts, and which of its fields are None.
 
         Returns
         -------

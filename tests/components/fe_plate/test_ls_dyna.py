@@ -162,7 +162,7 @@ def test_other_elements_are_refused_unless_parts_are_chosen(tmp_path):
     assert len(read(file, "refuse", (3,)).corner) == 1
     shell = "*ELEMENT_SHELL\n       1       5     101     103     105     107\n"
     notes = read(written(tmp_path, BOTH + shell, "shell.k")).notes
-    assert any("1 quad lie on its solids; they mark" in note for note in notes)
+    assert any("1 quad lie on faces of its solids: they name nodes" in note for note in notes)
     apart = shell.replace("     107", "     201") + "*NODE\n     201    5.0 5.0 5.0\n"
     apart = apart.replace("    5.0 5.0 5.0", f"{5.0:16.3f}{5.0:16.3f}{5.0:16.3f}")
     with pytest.raises(SceneError, match="must have no shells or beams"):

@@ -65,7 +65,7 @@ def test_shells_and_beams_beside_solids_are_refused(tmp_path):
 def test_faces_that_mark_solids_are_left_out_with_a_note(tmp_path):
     file = write(tmp_path, CUBE, [("hexahedron", ONE), ("quad", ONE[:, :4])])
     made = FePlate(FePlateParams(parts=(meshed(file),)))
-    assert any("1 quad lie on its solids" in note for note in made.notes())
+    assert any("1 quad lie on faces of its solids" in note for note in made.notes())
 
 
 def test_all_blocks_of_solids_are_read(tmp_path):
