@@ -11,6 +11,7 @@ from quintet.interfaces.params import NotNegative, Number, Positive, Vector, par
 ROUND = 8  # fewest nodes round a body
 AT_SHOCK = 0.25  # of its height, on either side of a shock: where layers are finest
 WIDENING = 0.5  # of layers with the distance from there
+MOST_LAYERS = 10_000  # of nodes round a body
 CLOSE = 1e-6  # rad, within which a sector is what it is meant to be
 
 
@@ -139,6 +140,12 @@ class Body:
                 "first_spacing_at_sector is of a cloud that ends at a sector; found none. Give "
                 "a sector of π/2, or leave out first_spacing_at_sector.",
             ),
+            (
+                self.heights[-1] < self.thickness,
+                f"a body has at most {MOST_LAYERS} layers; found more over a thickness of "
+                f"{self.thickness:g} m. Lower thickness, or raise first_spacing, growth, spacing "
+                "or shock_spacing.",
+            ),
         ]
 
     def _rules_of_sectors(self) -> list[tuple[bool, str]]:
@@ -181,10 +188,10 @@ class Body:
 
     @property
     def heights(self) -> list[float]:
-        """Heights [m] of its layers above the wall."""
+        """Heights [m] of its layers above the wall; the last ends its cloud."""
         step = self.first_spacing or 0.8 * math.tau * self.radius / self.points_around
         heights = [0.0]
-        while heights[-1] < self.thickness:
+        while heights[-1] < self.thickness and len(heights) <= MOST_LAYERS:
             heights.append(heights[-1] + min(step, self._spacing_near_shock(heights[-1])))
             step = min(step * self.growth, max(self.spacing, step))
         return heights

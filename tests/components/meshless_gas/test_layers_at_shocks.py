@@ -91,6 +91,9 @@ def test_layers_a_quarter_as_thick_halve_the_error_of_the_stand_off():
             FINE | {"sector": np.pi / 2, "first_spacing_at_sector": 0.05},
             "found first_spacing_at_sector beside it",
         ),
+        ({"first_spacing": 1e-12, "growth": 1.0}, "at most 10000 layers; found more over"),
+        ({"thickness": 1e9}, "at most 10000 layers; found more over a thickness of 1e+09 m"),
+        (FINE | {"shock_spacing": 1e-300}, "Lower thickness, or raise first_spacing"),
     ],
 )
 def test_settings_that_contradict_each_other_are_refused(body, message):
