@@ -210,11 +210,6 @@ class SphFluidParams:
             )
 
     def _check_pistons(self) -> None:
-        if self.remove_inside_bodies:
-            raise ValueError(
-                "remove_inside_bodies and boundary.pistons do not go together. Cut the fluid "
-                "where bodies are, or remove the pistons."
-            )
         # Left out of scenes without pistons.
         from quintet.components.sph_fluid.setup.piston_checks import check_pistons
 

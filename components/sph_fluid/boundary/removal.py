@@ -15,17 +15,17 @@ from quintet.components.sph_fluid.state import Array, State
 
 
 def remove(state: State, samples: Samples, position: Array, params: SphFluidParams) -> list[str]:
-    """Remove the fluid that bodies with samples (k, 3) m displace; say how much."""
+    """Remove the fluid that bodies of links with samples at (k, 3) m displace; say how much."""
+    # Samples of links stand before those of pistons, beside which a scene has no fluid to remove.
+    body, volume = samples.body[: len(position)], samples.volume[: len(position)]
     axes = [0, 2] if params.dimensions == 2 else [0, 1, 2]
     points, position = state.position_density[: state.fluid, axes], position[:, axes]
     removed, notes = np.zeros(len(points), bool), []
     mass = constants(params).mass * params.slab_thickness
-    for number in np.unique(samples.body):
-        of_body = samples.body == number
+    for number in np.unique(body):
+        of_body = body == number
         left = np.flatnonzero(~removed)
-        rows = left[
-            displaced(points[left], position[of_body], samples.volume[of_body], params.spacing)
-        ]
+        rows = left[displaced(points[left], position[of_body], volume[of_body], params.spacing)]
         if len(rows):
             notes.append(
                 f"body {number:g} stood in the fluid: {len(rows)} particles inside it, "

@@ -272,7 +272,6 @@ DEEP = {"dimensions": 3}
         ("obstacles.0", TURN, {}, "in the plane of x and z in two dimensions"),
         ("obstacles.0", PUSH, {"boundary.symmetry": ["x+"]}, "plane of boundary.symmetry x"),
         ("obstacles.0", PUSH, {"boundary.method": "potential"}, "need boundary.method mdbc or dbc"),
-        ("obstacles.0", PUSH, {"remove_inside_bodies": True}, "do not go together"),
         ("obstacles.0", PUSH, DEEP | {"boundary.lubrication_films": True}, "films know no pistons"),
     ],
 )

@@ -1,0 +1,64 @@
+"""Bodies that float beside pistons: what is removed, and what pushes them."""
+
+import numpy as np
+import pytest
+from fluid_params import fluid_params
+from sampled_bodies import BOX, mirrors
+
+from quintet.components.sph_fluid.component import SphFluid
+from quintet.interfaces.component import outputs_of
+
+SPACING = 0.02
+BASE = {
+    "spacing": SPACING,
+    "sound_speed": 20.0,
+    "dimensions": 2,
+    "kernel": "wendland",
+    "density_diffusion": 0.1,
+    "integration": "symplectic",
+    "viscosity.artificial": 0.05,
+    "boundary.method": "mdbc",
+    "boundary.walls": ((-0.1, 0.0, 0.0), (0.4, 1.0, 0.4)),
+    "boundary.obstacles": [((0.0, 0.0, 0.0), (0.06, 1.0, 0.4))],  # all across the tank
+    "fluid": [((0.06, 0.0, 0.0), (0.4, 1.0, 0.2))],
+    "remove_inside_bodies": True,
+}
+STAY = {"times": [0.0, 9.0], "displacement": [[0.0, 0.0, 0.0], [0.0, 0.0, 0.0]]}
+PISTON = {"boundary.pistons": [{"part": "obstacles.0", "motion": STAY}]}
+
+
+def floating(tables):
+    """Fluid in which a square of 4 spacings is held, half under water, and its samples."""
+    fluid = SphFluid(fluid_params(**BASE | tables))
+    edge, centre = 4.0 * SPACING, np.array([0.22, 0.5, 0.2])
+    across = (np.arange(4) - 1.5) * SPACING
+    arm = np.array([[x, 0.0, z] for x in across for z in across])
+    outermost = np.abs(arm) == np.abs(arm).max(axis=1, keepdims=True)
+    normal = np.where(outermost, np.sign(arm), 0.0)
+    normal /= np.linalg.norm(normal, axis=1, keepdims=True)
+    image = mirrors(BOX, np.array([edge, 1.0, edge]), arm, normal)
+    count = len(arm)
+    static = {"normal": normal, "volume": np.full(count, SPACING**2), "body": np.zeros(count)}
+    fluid.bind({f"surface.{k}": v for k, v in static.items()}, frozenset({"surface"}))
+    fields = {"position": centre + arm, "velocity": 0.0 * arm, "mirror": centre + image}
+    fields = {f"surface.{k}": v for k, v in fields.items()}
+    fluid.prime(fields)
+    return fluid, fields
+
+
+def test_water_is_removed_inside_bodies_and_not_beside_pistons():
+    """A piston at rest pushes as an obstacle does, and the body alone displaces water."""
+    loads = []
+    for tables in ({}, PISTON):
+        fluid, fields = floating(tables)
+        assert fluid.notes() == (
+            "body 0 stood in the fluid: 8 particles inside it, 3.2 kg, were removed",
+        )
+        for _ in range(400):
+            fluid.take(fields)
+            fluid.step(5e-4)
+            loads.append(outputs_of(fluid)["surface_load.force"].sum(axis=0))
+    still, beside_piston = np.array(loads).reshape(2, 400, 3)
+    assert beside_piston == pytest.approx(still, abs=1e-6 * np.abs(still).max())
+    weight = 9810.0 * 0.08 * 0.04  # N, of the water that 1 m of the square displaces
+    assert beside_piston[200:, 2].mean() == pytest.approx(weight, rel=0.1)
