@@ -19,6 +19,7 @@ from quintet.coupler.measures.expectation import (
     ROUNDING,
     Expectation,
 )
+from quintet.coupler.measures.harmonic import amplitude
 from quintet.coupler.measures.oscillation import fit
 from quintet.coupler.measures.time_series import Curve
 from quintet.interfaces.component import Field, Fields, Port, fields_of, lacked
@@ -217,6 +218,9 @@ def _measured(expectation: Expectation, curve: Curve, end: float) -> float:
             return fit(part).period
         case "decay":
             return fit(part).decay
+        case "amplitude":
+            assert expectation.period is not None
+            return amplitude(part, expectation.period)
         case "mean":
             return time_series.mean(part)
         case "integral":
@@ -325,6 +329,8 @@ def _why_none(expectation: Expectation) -> str:
             "the recorded curves hold no whole period, or the places cannot tell the two trains "
             "apart: two of them should be 0.05 to 0.45 lengths apart"
         )
+    if expectation.period is not None:
+        return f"the recorded curve holds no whole period of {expectation.period:g} s"
     return "the recorded curve has no finite value, or does not oscillate"
 
 

@@ -14,7 +14,7 @@ from quintet.interfaces.params import NotNegative, Number, Positive, parameters
 
 Measure = Literal[
     "rms", "relative_rms", "crossing", "at", "max", "min", "mean", "integral", "period", "decay",
-    "wave_height", "wave_length", "reflection",
+    "amplitude", "wave_height", "wave_length", "reflection",
 ]  # fmt: skip
 DISTANCES = ("rms", "relative_rms")  # to a curve
 OF_WAVES = ("wave_height", "wave_length", "reflection")  # that run along a line
@@ -33,9 +33,10 @@ class Expectation:
     ``rms`` is the distance to the curve of a file, over that curve's own times, and
     ``relative_rms`` the same over the curve's own size; ``crossing`` the first time at which a
     level is passed; ``at`` the value at ``begin``; ``period`` [s] and ``decay`` [1/s] those of the
-    damped oscillation that fits best; ``integral`` is over time; ``wave_height``, ``wave_length``
-    [m] and ``reflection`` are those of waves along a line of items, ``waves``; these and the others
-    are taken between ``begin`` and ``end``. Impulse fields are measured as mean rates.
+    damped oscillation that fits best; ``amplitude`` that of the harmonic of a known ``period``;
+    ``integral`` is over time; ``wave_height``, ``wave_length`` [m] and ``reflection`` are those of
+    waves along a line of items, ``waves``; these and the others are taken between ``begin`` and
+    ``end``. Impulse fields are measured as mean rates.
 
     Parameters
     ----------
@@ -57,7 +58,10 @@ class Expectation:
         Distance to the reference curve (rms), also over that curve's own size (relative_rms); time
         at which `level` is passed first (crossing); value at the time `begin` (at); largest,
         smallest and mean value; integral over time; period and decay of the damped oscillation
-        that fits best; height, length and coefficient of reflection of waves.
+        that fits best; amplitude of the harmonic of a known `period`; height, length and
+        coefficient of reflection of waves.
+    period : s
+        Of the harmonic whose amplitude is measured, as of the waves that a body floats in.
     waves
         Items along the way of waves; pictures show the curve of `item`.
     value : `unit`
@@ -117,6 +121,7 @@ class Expectation:
     offset: Number = 0.0
     scale: Number = 1.0
     measure: Measure
+    period: Positive | None = None
     waves: WaveLine | None = None
     value: Number | None = None
     csv: str | None = None
@@ -171,6 +176,11 @@ class Expectation:
             (
                 self.from_level is not None and self.measure in ("crossing", "at"),
                 "times of a crossing, and of a value, count from the start; remove from_level.",
+            ),
+            (
+                (self.measure == "amplitude") != (self.period is not None),
+                "period belongs to an amplitude, which needs one; "
+                f"measure is {self.measure}, period is {self.period}.",
             ),
             (
                 (self.measure in OF_WAVES) != (self.waves is not None),

@@ -23,15 +23,14 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import NonNegativeInt
 
+from quintet.coupler.measures.harmonic import columns, factors
 from quintet.coupler.measures.time_series import Curve
 from quintet.interfaces.component import Array
 from quintet.interfaces.params import Number, Positive, parameters
 
-HARMONICS = 3  # that are fitted in time
 FEWEST = 2  # places; 3 where the length is sought
 PHASES = 720  # of a period, at which the fitted curve is looked at
 APART = 0.3  # |sin k dx| of the best two places: of a distance of 0.05 or 0.45 lengths 0.31
-CYCLES = 0.99  # that a curve must hold
 TRIALS = 400  # lengths that are looked at, before the best one is refined
 SHARPENED = 60  # steps of the golden section
 Complex = NDArray[np.complex128]
@@ -84,12 +83,10 @@ NONE = Train(math.nan, math.nan, math.nan)
 
 def fit(curves: Curve, line: WaveLine) -> Train:
     """Fit two wave trains to curves, values (m, k), at the places of a line."""
-    times = curves.times - curves.times[0]
-    if len(times) < 4 * HARMONICS or times[-1] < CYCLES * line.period:
+    fitted = factors(curves, line.period)
+    if fitted is None:
         return NONE
-    omega = 2.0 * math.pi / line.period
-    factors = np.linalg.lstsq(_columns(omega * times), curves.values, rcond=None)[0]
-    amplitudes = factors[1] - 1j * factors[2]  # (k,) B
+    amplitudes = fitted[1] - 1j * fitted[2]  # (k,) B
     places = np.array(line.places)
     length = line.length or _best_length(places, amplitudes)
     if math.isnan(length) or not _tell_apart(places, length):
@@ -98,7 +95,7 @@ def fit(curves: Curve, line: WaveLine) -> Train:
     if not forth:
         return Train(0.0, math.nan, length)
     sizes = np.abs(amplitudes)
-    height = abs(forth) * float(_ranges(factors) @ sizes / (sizes @ sizes))
+    height = abs(forth) * float(_ranges(fitted) @ sizes / (sizes @ sizes))
     return Train(height, abs(back) / abs(forth), length)
 
 
@@ -108,18 +105,10 @@ def _tell_apart(places: Array, length: float) -> bool:
     return bool(np.abs(np.sin(2.0 * math.pi / length * distances)).max() >= APART)
 
 
-def _ranges(factors: Array) -> Array:
+def _ranges(fitted: Array) -> Array:
     """From the lowest to the highest value (k,) of harmonics with factors (1 + 2n, k)."""
     phases = np.linspace(0.0, 2.0 * math.pi, PHASES, endpoint=False)
-    return np.asarray(np.ptp(_columns(phases) @ factors, axis=0))
-
-
-def _columns(phases: Array) -> Array:
-    """One, cosines and sines (m, 1 + 2n) of phases (m,) rad and of their multiples."""
-    columns = [np.ones_like(phases)]
-    for n in range(1, HARMONICS + 1):
-        columns += [np.cos(n * phases), np.sin(n * phases)]
-    return np.stack(columns, axis=1)
+    return np.asarray(np.ptp(columns(phases) @ fitted, axis=0))
 
 
 def _trains(places: Array, amplitudes: Complex, length: float) -> tuple[Complex, float]:

@@ -132,7 +132,7 @@ EXPECTATIONS = {
     "axis": ("axis = 0", "axis = 3", "expectation e: axis of out.number must be 0 to 2; found 3."),
     "csv": ("value = 1.0", 'csv = "none.csv"', "expectation e: reference none.csv must be a text file beside the scene; "),
     "no reference": ("value = 1.0", "", "expect.e: expectation e: it must have one reference; give either value or csv."),
-    "measure": ('"at"', '"around"', "expect.e.measure should be 'rms', 'relative_rms', 'crossing', 'at', 'max', 'min', 'mean', 'integral', 'period', 'decay', 'wave_height', 'wave_length' or 'reflection'; found 'around'. Correct it."),
+    "measure": ('"at"', '"around"', "expect.e.measure should be 'rms', 'relative_rms', 'crossing', 'at', 'max', 'min', 'mean', 'integral', 'period', 'decay', 'amplitude', 'wave_height', 'wave_length' or 'reflection'; found 'around'. Correct it."),
     "key": ("within", "whitin", "expect.e.whitin is not known. Did you mean within?"),
     "no table": ("[[expect]]", "[expect]", "expect must be a list of tables; found {"),
 }  # fmt: skip
