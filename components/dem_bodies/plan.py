@@ -1,10 +1,14 @@
 """What a run of bodies will need: its rows, step and time, estimated without making the bodies."""
 
+from pathlib import Path
+
 import numpy as np
 
 from quintet.components.dem_bodies.contact.expected import expected_frequency
 from quintet.components.dem_bodies.contact.materials import DURATION, SPEED_UP
 from quintet.components.dem_bodies.params import DemBodiesParams
+from quintet.components.dem_bodies.shapes.placement import cover
+from quintet.components.dem_bodies.shapes.rigid_body import RigidBody
 from quintet.components.dem_bodies.shapes.solid import is_ball, solids
 from quintet.interfaces.manifest import Plan
 
@@ -21,4 +25,17 @@ def plan(params: DemBodiesParams) -> Plan:
     is_ball_of_kind = np.array([is_ball(kind) for kind in bodies.kinds])
     balls = int(bodies.counts[is_ball_of_kind[bodies.kind]].sum())
     step = 1.5e-5 + 1.3e-7 * balls + 1e-6 * (count - balls)  # s
-    return Plan(count, dt, rate=count / step, bytes_per_item=1200.0)
+    notes = tuple(_mesh_note(body) for body in bodies.kinds if body.file is not None)
+    return Plan(count, dt, rate=count / step, bytes_per_item=1200.0, notes=notes)
+
+
+def _mesh_note(body: RigidBody) -> str:
+    """Size and mass of a body from a file, by which a user sees whether its scale is right."""
+    shape = cover(body)
+    assert shape is not None and body.file is not None
+    mass = body.mass if body.mass is not None else (body.density or 0.0) * shape.volume
+    size, place = " x ".join(f"{x:.4g}" for x in shape.size), body.position
+    return (
+        f"{Path(body.file).name} is {size} m, encloses {shape.volume:.4g} m3 and has {mass:.4g} "
+        f"kg; its centre of mass is at ({', '.join(f'{x:.4g}' for x in place)}) m"
+    )
