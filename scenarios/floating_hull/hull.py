@@ -82,13 +82,17 @@ def displaced(corners: Array, level: float) -> tuple[float, float]:
 
 
 def rest(corners: Array, density: float) -> tuple[float, float, float]:
-    """Draught [m], displaced volume [m3] and area [m2] of the water plane at rest, by halving."""
-    volume = displaced(corners, 0.0)[0] * density / WATER
-    low, high = -DEPTH, 0.0
+    """Draught [m], displaced volume [m3] and area [m2] of the water plane at rest, by halving.
+
+    Of any closed surface that floats upright, by its corners (t, 3, 3) m.
+    """
+    keel, deck = float(corners[:, :, 2].min()), float(corners[:, :, 2].max())
+    volume = displaced(corners, deck)[0] * density / WATER
+    low, high = keel, deck
     for _ in range(60):
         middle = 0.5 * (low + high)
         low, high = (middle, high) if displaced(corners, middle)[0] < volume else (low, middle)
-    return low + DEPTH, volume, displaced(corners, low)[1]
+    return low - keel, volume, displaced(corners, low)[1]
 
 
 def main() -> None:

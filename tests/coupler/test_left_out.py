@@ -127,7 +127,7 @@ def test_the_coupler_of_several_processes_imports_no_solver(tmp_path):
 
 # For trimesh, which reads a hull, pint, which knows the units in the heads of a table, and the
 # overlaps of thousands of spheres.
-NEED_SCIPY = ("column_collapse", "floating_hull", "spheric_10")
+NEED_SCIPY = ("column_collapse", "floating_hull", "hull_in_waves", "spheric_10")
 
 
 @pytest.fixture(scope="module")

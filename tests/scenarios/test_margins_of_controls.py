@@ -28,6 +28,7 @@ NOT_RUN = {
     "shock_layer_particle",
     "floating_cube",
     "floating_hull",
+    "hull_in_waves",
     "shock_layer_oblique",
     "dam_break_cubes",
     "sloshing",
