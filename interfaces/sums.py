@@ -63,14 +63,12 @@ def moment(position: Array, force: Array) -> Array:
 
 
 def finite(array: Array) -> bool:
-    """Tell whether every number is finite; one pass over memory when all is well."""
+    """Tell whether every number is finite."""
     if array.dtype.kind != "f":
         return True
-    if array.size <= BLOCK:  # counting is several times faster than ``all`` of so few
-        return bool(np.count_nonzero(np.isfinite(array)) == array.size)
-    # A sum is finite unless a number is not, or unless numbers are so large that it overflows.
-    with np.errstate(over="ignore", invalid="ignore"):
-        return bool(math.isfinite(array.sum()) or np.isfinite(array).all())
+    if array.size <= BLOCK:  # a search for a zero byte is twice as fast as ``all`` of so few
+        return b"\0" not in np.isfinite(array).tobytes()
+    return bool(np.isfinite(array).all())
 
 
 def _blocks(rows: int, columns: int) -> Iterator[slice]:

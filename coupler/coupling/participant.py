@@ -151,7 +151,8 @@ class Participant:
                 if self.sums and self.order == "advance":
                     self.sums.check(message)
             if finite and not failed:
-                giver = sendable(str(message.header.get("giver", "it")))
+                rank = message.header.get("giver")  # of a component of several
+                giver = sendable(str(rank)) if rank else "it"
                 require_finite(message.fields, f"what {giver} gave")
         except MessageError as error:
             if self.trial:

@@ -68,9 +68,7 @@ def encode(
     PREFIX.pack_into(frame, 0, MAGIC, len(packed), total, zlib.crc32(packed))
     frame[PREFIX.size : PREFIX.size + len(packed)] = packed
     for place, array in zip(layout.places, fields.values(), strict=True):
-        if place.numbers:
-            into = np.frombuffer(frame, place.dtype, place.numbers, first + place.start)
-            into[:] = array.reshape(-1)
+        np.ndarray(place.shape, place.dtype, frame, first + place.start)[...] = array
     return frame
 
 
@@ -89,8 +87,8 @@ def decode(frame: Frame, expected: Shapes | None = None) -> Message:
     return Message(
         header,
         {
-            key: np.frombuffer(seen, dtype, numbers, first + start).reshape(shape)
-            for key, dtype, shape, numbers, start, _ in layout.places
+            key: np.ndarray(shape, dtype, seen, first + start)
+            for key, dtype, shape, _, start, _ in layout.places
         },
     )
 
