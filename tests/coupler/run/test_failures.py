@@ -43,13 +43,13 @@ def test_a_failed_run_keeps_what_it_has_and_quotes_the_log(tmp_path):
 @pytest.mark.parametrize("by", ["raise", "kill"])
 def test_who_fails_while_another_is_awaited_is_told_at_once(tmp_path, by):
     scene = write_scene(
-        tmp_path, "zenoh", 100.0, "pause = 20.0", f'fails_at = 0\nfails_by = "{by}"'
+        tmp_path, "zenoh", 100.0, "pause = 100.0", f'fails_at = 0\nfails_by = "{by}"'
     )
     scene.write_text('scheme = "parallel"\n' + scene.read_text())
     run = Started(scene)
     began = time.monotonic()
     assert run.wait() == 3
-    assert time.monotonic() - began < 15.0
+    assert time.monotonic() - began < 50.0  # with what starting takes on a loaded machine
     assert run.results["fault"]["component"] == "pong"
     assert ("asked to raise" if by == "raise" else "SIGKILL") in run.results["fault"]["cause"]
     check_end(run)

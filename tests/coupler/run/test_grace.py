@@ -10,8 +10,8 @@ from started import Started, write_scene
 @pytest.mark.zenoh
 @pytest.mark.parametrize(("arguments", "saved"), [((), False), (("--grace", "20"), True)])
 def test_a_long_window_ends_in_a_snapshot_if_it_is_given_time(tmp_path, arguments, saved):
-    """Of a window of 1 s no more than 0.7 s are waited for otherwise."""
-    scene = write_scene(tmp_path, "zenoh", 1.0, pong="pause = 1.0\ntalks = true")
+    """Of a window of 2.5 s no more than 0.7 s are waited for otherwise."""
+    scene = write_scene(tmp_path, "zenoh", 1.0, pong="pause = 2.5\ntalks = true")
     run = Started(scene, *arguments)
     log = run.folder / "log/pong.log"
     run.wait_until(lambda: log.exists() and "a step" in log.read_text())
