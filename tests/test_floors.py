@@ -3,6 +3,7 @@
 import ast
 import re
 from collections import defaultdict
+from functools import cache
 
 import pytest
 from test_layers import FILES, ROOT, imported, nodes, where
@@ -41,7 +42,10 @@ def imports_of(path):
     return names - {dotted(path)}
 
 
-GRAPH = {name: imports_of(path) for name, path in MODULES.items()}
+@cache
+def imports():
+    """Modules that each module imports; read when a test asks, as every worker loads this file."""
+    return {name: imports_of(path) for name, path in MODULES.items()}
 
 
 def in_circles(graph):
@@ -64,7 +68,7 @@ def not_in(places, known):
 
 def test_no_file_imports_itself_in_a_circle():
     """Imports for types are counted, as the reader follows them too."""
-    circles = {name.replace(".", "/") for name in in_circles(GRAPH)}
+    circles = {name.replace(".", "/") for name in in_circles(imports())}
     assert sorted(circles) == []
 
 
@@ -75,9 +79,9 @@ def part_of(name, storey):
 @pytest.mark.parametrize("folder", STOREYS)
 def test_parts_of_a_folder_form_no_circle(folder):
     storey, graph = folder.replace("/", "."), defaultdict(set)
-    inside = {name for name in GRAPH if name == storey or name.startswith(f"{storey}.")}
+    inside = {name for name in imports() if name == storey or name.startswith(f"{storey}.")}
     for name in inside:
-        parts = {part_of(target, storey) for target in GRAPH[name] & inside}
+        parts = {part_of(target, storey) for target in imports()[name] & inside}
         graph[part_of(name, storey)] |= parts - {part_of(name, storey)}
     assert in_circles(dict(graph)) == set()
 
@@ -87,10 +91,10 @@ def test_imports_run_downwards_inside_components():
     upward = []
     for folder in COMPONENTS:
         storey = where(folder).replace("/", ".")
-        for name in (n for n in GRAPH if n == storey or n.startswith(f"{storey}.")):
+        for name in (n for n in imports() if n == storey or n.startswith(f"{storey}.")):
             part = part_of(name, storey)
             level = FLOOR.get(part, FLOOR["conform" if part in ABOVE_COMPONENT else "view"])
-            for target in GRAPH[name]:
+            for target in imports()[name]:
                 if target == storey or target.startswith(f"{storey}."):
                     above = part_of(target, storey)
                     if above in FLOOR and above != part and FLOOR[above] > level:
