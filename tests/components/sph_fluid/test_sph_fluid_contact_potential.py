@@ -96,10 +96,13 @@ def test_force_on_a_plate_is_that_of_the_lattices(
     assert force[2] / SPACING**2 == pytest.approx(-expected, rel=1e-6)
 
 
-def test_contact_gives_and_takes_the_same_impulse(drop: Make, plate: Join, struck: Strike) -> None:
+@pytest.mark.parametrize("kinematic", [0.0, pytest.param(1e-3, marks=pytest.mark.full)])
+def test_contact_gives_and_takes_the_same_impulse(
+    drop: Make, plate: Join, struck: Strike, kinematic: float
+) -> None:
     given = {
         "gravity": (0.0, 0.0, 0.0),
-        "viscosity.kinematic": 1e-3,
+        "viscosity.kinematic": kinematic,
         "boundary.potential_stiffness": 3e3,
     }
     fluid = drop(boundary__method="potential", **given)
