@@ -67,8 +67,9 @@ def test_particles_of_buffers_are_no_part_of_the_fluid() -> None:
 
 
 @pytest.mark.parametrize("integration", ["extrapolated", "symplectic"])
-def test_threads_and_a_saved_state_change_no_bit(integration: str) -> None:
-    changes = {"integration": integration, "xsph": 0.2, "boundary.outflow": [{"face": "x+"}]}
+@pytest.mark.parametrize("xsph", [0.0, pytest.param(0.2, marks=pytest.mark.full)])
+def test_threads_and_a_saved_state_change_no_bit(integration: str, xsph: float) -> None:
+    changes = {"integration": integration, "xsph": xsph, "boundary.outflow": [{"face": "x+"}]}
     fluid, other = tube(**changes), tube(**changes)
     shared = SphFluid(fluid.params, Resources(2))
     for each in (fluid, shared):
