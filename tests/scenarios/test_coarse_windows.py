@@ -27,9 +27,9 @@ def run(out: Path, scene: str, *settings: str) -> tuple[int, dict]:
     ("scheme", "stiffness"),
     [
         ("serial", 1e7),
-        ("serial", 1e8),
         ("iterated", 1e5),
-        pytest.param("iterated", 1e9, marks=pytest.mark.slow),
+        pytest.param("serial", 1e8, marks=pytest.mark.full),
+        pytest.param("iterated", 1e9, marks=pytest.mark.full),
     ],
 )
 def test_windows_longer_than_a_stiff_period_are_warned_of(tmp_path, scheme, stiffness):
@@ -44,7 +44,8 @@ def test_windows_longer_than_a_stiff_period_are_warned_of(tmp_path, scheme, stif
 
 # Exact by normal modes: 2, 10 and 27 % of the lift off.
 @pytest.mark.parametrize(
-    ("window", "end", "told"), [(1e-3, 1.0, 0), (4e-3, 1.0, 1), (2e-3, 5.0, 1)]
+    ("window", "end", "told"),
+    [(1e-3, 1.0, 0), (4e-3, 1.0, 1), pytest.param(2e-3, 5.0, 1, marks=pytest.mark.full)],
 )
 def test_energy_that_a_staggered_link_makes_is_warned_of(tmp_path, window, end, told):
     times = f"window={window}", f"end={end}"
@@ -56,14 +57,16 @@ def test_energy_that_a_staggered_link_makes_is_warned_of(tmp_path, window, end, 
 
 
 # Velocities are 1, 5 and 24 % off.
-@pytest.mark.parametrize(("window", "told"), [(4e-5, 0), (1.6e-4, 1), (6.4e-4, 1)])
+@pytest.mark.parametrize(
+    ("window", "told"), [(4e-5, 0), (1.6e-4, 1), pytest.param(6.4e-4, 1, marks=pytest.mark.full)]
+)
 def test_windows_longer_than_a_drag_relaxes_are_warned_of(tmp_path, window, told):
     status, results = run(tmp_path / "run", "dust_in_stream", f"window={window}", "expect=[]")
     assert status == told
     assert any("too long: gas.particle" in one["text"] for one in results["warnings"]) == bool(told)
 
 
-@pytest.mark.parametrize("window", [2e-3, 16e-3])
+@pytest.mark.parametrize("window", [pytest.param(2e-3, marks=pytest.mark.full), 16e-3])
 def test_windows_that_resolve_the_motion_are_not_warned_of(tmp_path, window):
     status, results = run(tmp_path / "run", "two_springs", f"window={window}", "expect=[]")
     assert (status, results["warnings"]) == (0, [])
@@ -80,7 +83,9 @@ def test_a_relaxation_that_lets_heat_swing_is_warned_of(tmp_path):
     assert "Set relaxation of the link from 1 to 0.5 or less." in warning["text"]
 
 
-@pytest.mark.parametrize("scheme", ["serial", "parallel", "iterated"])
+@pytest.mark.parametrize(
+    "scheme", ["serial", pytest.param("parallel", marks=pytest.mark.full), "iterated"]
+)
 def test_a_look_at_windows_changes_no_bit(tmp_path, monkeypatch, scheme):
     settings = f"scheme='{scheme}'", "end=0.15", "expect=[]"
     _, looked = run(tmp_path / "looked", "two_springs", *settings)
