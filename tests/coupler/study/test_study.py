@@ -209,7 +209,9 @@ def test_a_scene_without_refinements_says_so(tmp_path, capsys):
     assert "there is no [[study]]. Add one for every refinement." in capsys.readouterr().err
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize(
+    "number", [pytest.param(signal.SIGINT, marks=pytest.mark.full), signal.SIGTERM]
+)
 def test_an_interrupted_study_keeps_and_tells_the_refinements_that_ran(tmp_path, number):
     path = write(tmp_path, refinements(0.005) + REFINEMENT.format(1e-6) + refinements(0.02))
     line = [sys.executable, "-m", "quintet.coupler.cli", "study", str(path)]
