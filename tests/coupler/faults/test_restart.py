@@ -22,7 +22,17 @@ MOMENTS = {
     "snapshot": ("save", 79),
     "end": ("finish", 0),
 }
-
+BY_DEFAULT = ("first window", "later window", "snapshot")
+SERIAL = [
+    moment if moment in BY_DEFAULT else pytest.param(moment, marks=pytest.mark.full)
+    for moment in MOMENTS
+]
+OTHER_SCHEMES = [
+    ("later window", "parallel"),
+    ("between", "iterated"),
+    pytest.param("between", "parallel", marks=pytest.mark.full),
+    pytest.param("later window", "iterated", marks=pytest.mark.full),
+]
 
 SNAPSHOTS = ("--set", "output.snapshots=0.04")
 
@@ -86,7 +96,7 @@ def check_killed(mortal, undisturbed, moment, scheme):
     return int(re.search(r"repeated (\d+) window", note)[1])
 
 
-@pytest.mark.parametrize("moment", MOMENTS)
+@pytest.mark.parametrize("moment", SERIAL)
 def test_a_component_that_is_killed_takes_up_its_work_with_the_same_bits(
     mortal, undisturbed, moment
 ):
@@ -96,8 +106,7 @@ def test_a_component_that_is_killed_takes_up_its_work_with_the_same_bits(
     assert windows <= most.get(moment, 0)
 
 
-@pytest.mark.parametrize("scheme", ["parallel", "iterated"])
-@pytest.mark.parametrize("moment", ["later window", "between"])
+@pytest.mark.parametrize(("moment", "scheme"), OTHER_SCHEMES)
 def test_windows_that_are_stepped_at_once_or_repeated_are_taken_up(
     mortal, undisturbed, moment, scheme
 ):
@@ -169,7 +178,9 @@ def test_without_restarts_a_death_ends_the_run_as_ever(mortal):
 
 
 @pytest.mark.mpi
-@pytest.mark.parametrize(("fails_in", "fails_at"), [("build", 0), ("after", 121)])
+@pytest.mark.parametrize(
+    ("fails_in", "fails_at"), [pytest.param("build", 0, marks=pytest.mark.full), ("after", 121)]
+)
 def test_a_component_of_which_a_rank_dies_takes_up_its_work(tmp_path, fails_in, fails_at):
     keys = f'moment = "{tmp_path / "deaths"}"\nfails_by = "SIGKILL"\ntimes = 1\n'
     keys += f"fails_at = {fails_at}\nfails_in = "

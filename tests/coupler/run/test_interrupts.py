@@ -16,6 +16,13 @@ from quintet.coupler.run import results
 from quintet.coupler.run.snapshots import snapshots
 
 OVER = [pytest.param("zenoh", marks=pytest.mark.zenoh), pytest.param("mpi", marks=pytest.mark.mpi)]
+IN_TURN = {  # one transport by default, all of them under -m full
+    default: [
+        pytest.param(name, marks=[*marks, *([] if name == default else [pytest.mark.full])])
+        for name, *marks in (("memory",), ("zenoh", pytest.mark.zenoh), ("mpi", pytest.mark.mpi))
+    ]
+    for default in ("memory", "zenoh")
+}
 SOON = 2.0 + 1.0  # s: what the README promises, and one for the other tests on the machine
 LONG = 60.0  # s, of a window that nothing waits for
 LOADED = 20.0  # s that a loaded machine may need for what it should do at once; less than LONG
@@ -50,11 +57,8 @@ def interrupted(tmp_path, transport, number):
     return run, took
 
 
-@pytest.mark.parametrize("transport", ["memory", *OVER])
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_an_interrupted_run_keeps_what_it_has(tmp_path, transport, number):
-    run, took = interrupted(tmp_path, transport, number)
-    assert took < LOADED
+def check_interrupted(run, transport, number):
+    """The run has ended in order, and has kept all of its windows."""
     assert run.process.returncode == 130
     results = run.results
     assert results["status"] == "interrupted" and results["windows"] >= 50
@@ -68,11 +72,27 @@ def test_an_interrupted_run_keeps_what_it_has(tmp_path, transport, number):
         assert "finished" in (run.folder / "log" / "pong.log").read_text()
 
 
+@pytest.mark.parametrize(
+    ("transport", "number"),
+    [
+        ("memory", signal.SIGTERM),
+        pytest.param("zenoh", signal.SIGINT, marks=pytest.mark.zenoh),
+        pytest.param("mpi", signal.SIGTERM, marks=pytest.mark.mpi),
+    ],
+)
+def test_an_interrupted_run_keeps_what_it_has(tmp_path, transport, number):
+    run, took = interrupted(tmp_path, transport, number)
+    assert took < LOADED
+    check_interrupted(run, transport, number)
+
+
 @pytest.mark.full
 @pytest.mark.parametrize("transport", ["memory", *OVER])
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_an_interrupted_run_ends_in_time(tmp_path, transport, number):
-    assert interrupted(tmp_path, transport, number)[1] < SOON
+    run, took = interrupted(tmp_path, transport, number)
+    assert took < SOON
+    check_interrupted(run, transport, number)
 
 
 @pytest.fixture
@@ -164,7 +184,7 @@ def test_an_mpi_job_ends_when_its_coupler_is_killed(tmp_path, who):
     assert not run.left_in_shared_memory()
 
 
-@pytest.mark.parametrize("transport", ["memory", *OVER])
+@pytest.mark.parametrize("transport", IN_TURN["memory"])
 def test_a_run_whose_terminal_is_closed_leaves_a_snapshot(tmp_path, transport):
     path = write_scene(tmp_path, transport, 1000.0, pong="pause = 1e-3")
     out, command = tmp_path / "out", Started.command(path)
@@ -184,7 +204,7 @@ def test_a_run_whose_terminal_is_closed_leaves_a_snapshot(tmp_path, transport):
     assert [path.name for path in snapshots(out)] == [f"snapshot-{found['windows']}.h5"]
 
 
-@pytest.mark.parametrize("transport", ["memory", *OVER])
+@pytest.mark.parametrize("transport", IN_TURN["zenoh"])
 def test_a_run_under_nohup_goes_on_without_its_terminal(tmp_path, transport):
     path = write_scene(tmp_path, transport, 1000.0, pong="pause = 1e-3")
     former = signal.signal(signal.SIGHUP, signal.SIG_IGN)  # as nohup does; children inherit it

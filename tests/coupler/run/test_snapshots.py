@@ -73,7 +73,10 @@ def test_a_ball_on_glued_particles_goes_on_from_a_snapshot_with_the_same_bits(go
     assert 0 < window and same(first, again)
 
 
-@pytest.mark.parametrize("transport", ["memory", *OVER])
+@pytest.mark.parametrize(
+    "transport",
+    ["memory", OVER[0], pytest.param("mpi", marks=[pytest.mark.mpi, pytest.mark.full])],
+)
 def test_an_interrupted_run_goes_on_with_the_same_bits(tmp_path, capsys, transport):
     path = write_scene(tmp_path, transport, 0.3, pong="pause = 3e-3")
     run = Started(path)
