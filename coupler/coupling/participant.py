@@ -151,8 +151,8 @@ class Participant:
                 if self.sums and self.order == "advance":
                     self.sums.check(message)
             if finite and not failed:
-                rank = message.header.get("giver")  # of a component of several
-                giver = sendable(str(rank)) if rank else "it"
+                giver = message.header.get("giver")  # the rank, of a component of several
+                giver = sendable(str(giver)) if giver else "it"
                 require_finite(message.fields, f"what {giver} gave")
         except MessageError as error:
             if self.trial:

@@ -104,7 +104,9 @@ def _entry(entry: Any) -> tuple[str, str, Shape]:
         text = reprlib.repr(name)
         raise MessageError(f"field {key}: type {text} is not one of {', '.join(DTYPES)}.")
     fits = isinstance(shape, list) and len(shape) <= DIMENSIONS
-    if not fits or not all(type(n) is int and 0 <= n < 1 << 40 for n in shape):
+    fits = fits and all(type(n) is int and 0 <= n < 1 << 40 for n in shape)
+    # numpy makes no array of such sizes, though one of them is 0 and it holds nothing.
+    if not fits or (0 in shape and math.prod(n or 1 for n in shape) >= 1 << 56):
         text = reprlib.repr(shape)
         raise MessageError(f"field {key}: {text} is not a shape of at most {DIMENSIONS} sizes.")
     return key, name, tuple(shape)

@@ -83,7 +83,7 @@ def decode(frame: Frame, expected: Shapes | None = None) -> Message:
         _compare(layout.shapes, expected)
     if first + layout.size != len(frame):
         _refuse_size(layout, len(frame) - first)
-    seen = memoryview(frame).toreadonly()
+    seen = np.frombuffer(memoryview(frame).toreadonly(), np.uint8)  # what holds the frame
     return Message(
         header,
         {

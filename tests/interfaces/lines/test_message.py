@@ -61,6 +61,22 @@ def test_a_header_comes_back_and_arrays_are_read_only():
         found.fields["a"][0] = 1.0
 
 
+@pytest.mark.parametrize("kind", [bytes, bytearray, lambda frame: np.frombuffer(frame, np.uint8)])
+def test_no_array_of_a_message_can_be_made_writable(kind):
+    array = decode(kind(encode({}, {"a": np.zeros(3)}, None))).fields["a"]
+    with pytest.raises(ValueError, match="WRITEABLE"):
+        array.setflags(write=True)
+
+
+def test_a_frame_keeps_its_size_while_arrays_of_its_message_live():
+    packed = encode({}, {"a": np.zeros(3)}, None)
+    message = decode(packed)
+    with pytest.raises(BufferError):
+        packed.extend(b"more")
+    del message
+    packed.extend(b"more")
+
+
 def test_every_array_is_aligned_and_frames_are_used_again():
     fields = {f"f{n}": np.arange(n, dtype="|u1") for n in (1, 7, 16, 17)}
     made = encode({"order": "x"}, fields, None)
@@ -98,6 +114,7 @@ def test_every_array_is_aligned_and_frames_are_used_again():
         (frame([["a", "<f8", [-2]]], b"\0" * 16), "is not a shape"),
         (frame([["a", "<f8", [1 << 40]]]), "is not a shape"),
         (frame([["a", "<f8", [1 << 39, 1 << 39, 1 << 39]]]), "must end within"),
+        (frame([["a", "<f8", [0, 1 << 39, 1 << 39, 1 << 39]]]), "is not a shape"),
         (frame([["a", "<f8", [1, 1, 1, 1, 1]]]), "is not a shape of at most 4"),
         (frame([["a", "<f8", [2.0]]], b"\0" * 16), "is not a shape"),
         (frame([["a", "<f8", [True]]], b"\0" * 16), "is not a shape"),
