@@ -19,7 +19,7 @@ from quintet.coupler.measures.expectation import (
     ROUNDING,
     Expectation,
 )
-from quintet.coupler.measures.harmonic import amplitude
+from quintet.coupler.measures.harmonic import VALUES, amplitude
 from quintet.coupler.measures.oscillation import fit
 from quintet.coupler.measures.time_series import Curve
 from quintet.interfaces.component import Field, Fields, Port, fields_of, lacked
@@ -96,6 +96,11 @@ def _check_field(
     if axis is not None and (len(shape) != 1 or axis >= shape[0]):
         allowed = f"0 to {shape[0] - 1}" if len(shape) == 1 else "left out"
         return [f"{where}: axis of {expectation.field} must be {allowed}; found {axis}."]
+    if axis is None and shape and expectation.measure == "amplitude":
+        return [
+            f"{where}: an amplitude of {expectation.field} needs its axis, 0 to {shape[0] - 1}: "
+            "magnitudes swing otherwise. Add axis."
+        ]
     return []
 
 
@@ -330,7 +335,10 @@ def _why_none(expectation: Expectation) -> str:
             "apart: two of them should be 0.05 to 0.45 lengths apart"
         )
     if expectation.period is not None:
-        return f"the recorded curve holds no whole period of {expectation.period:g} s"
+        return (
+            f"the recorded curve holds no whole period of {expectation.period:g} s, or fewer than "
+            f"{VALUES} finite values in each"
+        )
     return "the recorded curve has no finite value, or does not oscillate"
 
 

@@ -58,8 +58,8 @@ class Expectation:
         Distance to the reference curve (rms), also over that curve's own size (relative_rms); time
         at which `level` is passed first (crossing); value at the time `begin` (at); largest,
         smallest and mean value; integral over time; period and decay of the damped oscillation
-        that fits best; amplitude of the harmonic of a known `period`; height, length and
-        coefficient of reflection of waves.
+        that fits best; amplitude of the harmonic of a known `period`, without drift; height, length
+        and coefficient of reflection of waves.
     period : s
         Of the harmonic whose amplitude is measured, as of the waves that a body floats in.
     waves
@@ -181,6 +181,10 @@ class Expectation:
                 (self.measure == "amplitude") != (self.period is not None),
                 "period belongs to an amplitude, which needs one; "
                 f"measure is {self.measure}, period is {self.period}.",
+            ),
+            (
+                self.measure == "amplitude" and bool(self.moving_mean),
+                "moving_mean lowers an amplitude; remove it.",
             ),
             (
                 (self.measure in OF_WAVES) != (self.waves is not None),

@@ -1,8 +1,8 @@
 """Harmonics of a known period in a curve, in least squares, with a mean.
 
 What a wave of known period makes swing, as a floating body, answers with that period; its amplitude
-is that of the first harmonic. Two overtones are fitted beside it, so that a curve that holds no
-whole number of periods gives the same amplitude.
+is that of the first harmonic. Two overtones are fitted beside it, and a drift at constant speed, so
+that the amplitude is the same where a curve ends between two periods, or drifts away.
 """
 
 import math
@@ -14,20 +14,28 @@ from quintet.interfaces.component import Array
 
 HARMONICS = 3  # that are fitted in time
 CYCLES = 0.99  # that a curve must hold
+VALUES = 4 * HARMONICS  # that it must have in a period
 
 
-def factors(curve: Curve, period: float) -> Array | None:
-    """Mean, cosines and sines (1 + 2n, k) of a curve, values (m, k); None of less than a period."""
+def factors(curve: Curve, period: float, *, drifts: bool = False) -> Array | None:
+    """Mean, cosines and sines (1 + 2n, k) of a curve, values (m, k); then its drift, if asked for.
+
+    None if it holds less than a period, or has fewer than `VALUES` in each.
+    """
     times = curve.times - curve.times[0]
-    if len(times) < 4 * HARMONICS or times[-1] < CYCLES * period:
+    cycles = times[-1] / period
+    if cycles < CYCLES or len(times) < VALUES * cycles:
         return None
-    omega = 2.0 * math.pi / period
-    return np.asarray(np.linalg.lstsq(columns(omega * times), curve.values, rcond=None)[0])
+    phases = 2.0 * math.pi * times / period
+    terms = columns(phases)
+    if drifts:
+        terms = np.column_stack([terms, phases])
+    return np.asarray(np.linalg.lstsq(terms, curve.values, rcond=None)[0])
 
 
 def amplitude(curve: Curve, period: float) -> float:
-    """Amplitude of the first harmonic of a curve, values (m,); nan of less than a period."""
-    fitted = factors(curve, period)
+    """Amplitude of the first harmonic of a curve, values (m,); nan where none can be fitted."""
+    fitted = factors(curve, period, drifts=True)
     return math.nan if fitted is None else math.hypot(float(fitted[1]), float(fitted[2]))
 
 
