@@ -33,7 +33,10 @@ def _mesh_note(body: RigidBody) -> str:
     """Size and mass of a body from a file, by which a user sees whether its scale is right."""
     shape = cover(body)
     assert shape is not None and body.file is not None
-    mass = body.mass if body.mass is not None else (body.density or 0.0) * shape.volume
+    mass = body.mass
+    if mass is None:
+        assert body.density is not None
+        mass = body.density * shape.volume
     size, place = " x ".join(f"{x:.4g}" for x in shape.size), body.position
     return (
         f"{Path(body.file).name} is {size} m, encloses {shape.volume:.4g} m3 and has {mass:.4g} "

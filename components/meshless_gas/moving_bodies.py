@@ -11,7 +11,7 @@ from quintet.interfaces.params import NotNegative, Number, Positive, Vector, par
 ROUND = 8  # fewest nodes round a body
 AT_SHOCK = 0.25  # of its height, on either side of a shock: where layers are finest
 WIDENING = 0.5  # of layers with the distance from there
-MOST_LAYERS = 10_000  # of nodes round a body
+MOST_LAYERS = 10_000  # of nodes above the wall of a body
 CLOSE = 1e-6  # rad, within which a sector is what it is meant to be
 
 

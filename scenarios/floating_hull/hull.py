@@ -85,9 +85,24 @@ def rest(corners: Array, density: float) -> tuple[float, float, float]:
     """Draught [m], displaced volume [m3] and area [m2] of the water plane at rest, by halving.
 
     Of any closed surface that floats upright, by its corners (t, 3, 3) m.
+
+    Raises
+    ------
+    ValueError
+        Its triangles look inwards, or it does not float.
     """
     keel, deck = float(corners[:, :, 2].min()), float(corners[:, :, 2].max())
-    volume = displaced(corners, deck)[0] * density / WATER
+    whole = displaced(corners, deck)[0]
+    if whole <= 0.0:
+        raise ValueError(
+            f"triangles must look outwards; the surface encloses {whole:.4g} m3. Flip them."
+        )
+    if not 0.0 < density < WATER:
+        raise ValueError(
+            f"what floats has a density between 0 and {WATER:g} kg/m3; found {density:.4g}. "
+            "Correct its mass, or the scale of its file."
+        )
+    volume = whole * density / WATER
     low, high = keel, deck
     for _ in range(60):
         middle = 0.5 * (low + high)

@@ -160,7 +160,7 @@ def require_keys(
     known = {name for names in (*needs.values(), *may.values()) for name in names}
     present = sorted(name for name in known if getattr(table, name, None) is not None)
     if sorted(needed) != [name for name in present if name not in allowed]:
-        also = f" (also allowed: {', '.join(allowed)})" if allowed else ""
+        also = f" (it may have {' and '.join(allowed)})" if allowed else ""
         raise ValueError(
             f"{where}: a {table.shape} is described by {' and '.join(needed)} alone{also}; found "
             f"{', '.join(present) or 'none'}. Give {' and '.join(needed)}."

@@ -16,7 +16,7 @@ from quintet.components.sph_fluid.state import Array, State
 
 def remove(state: State, samples: Samples, position: Array, params: SphFluidParams) -> list[str]:
     """Remove the fluid that bodies of links with samples at (k, 3) m displace; say how much."""
-    # Samples of links stand before those of pistons, beside which a scene has no fluid to remove.
+    # Samples of pistons come after those of links; a scene has no fluid where pistons are.
     body, volume = samples.body[: len(position)], samples.volume[: len(position)]
     axes = [0, 2] if params.dimensions == 2 else [0, 1, 2]
     points, position = state.position_density[: state.fluid, axes], position[:, axes]

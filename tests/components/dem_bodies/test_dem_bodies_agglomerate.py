@@ -164,7 +164,7 @@ def test_what_is_wrong_with_a_file_is_told(files):
         "Make dim 6000 or larger, or sphere_radius larger, or correct": body(files / "cube.stl"),
         "must have at most 2000 spheres; dim 40": body(files / "l.npy", 40, scale=0.05),
         "must have room for a sphere within": body(files / "pyramid.ply", 3, 0.3),
-        "by file and agglomerate alone (also allowed: scale, origin); found agglomerate, c": body(
+        "by file and agglomerate alone (it may have scale and origin); found agglomerate, c": body(
             files / "ball.ply", centre=[0.0, 0.0, 0.0]
         ),
         "bodies.0.agglomerate.dim should be greater than or equal to 2": body("x", 1),
