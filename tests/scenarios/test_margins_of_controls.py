@@ -17,12 +17,10 @@ NOT_RUN = {
     "al_ball_7400",
     "dam_break_box",
     "water_on_plate",
-    "block_on_slope",
     "column_collapse",
     "elastic_gate",
     "al_ball_7400_glued",
     "dam_break_column",
-    "gap",
     "moving_sphere",
     "settling_packing",
     "shock_layer_particle",
@@ -31,7 +29,6 @@ NOT_RUN = {
     "hull_in_waves",
     "shock_layer_oblique",
     "dam_break_cubes",
-    "sloshing",
 }
 
 
