@@ -17,7 +17,7 @@ CYCLES = 0.99  # that a curve must hold
 VALUES = 4 * HARMONICS  # that it must have in a period
 
 
-def factors(curve: Curve, period: float, *, drifts: bool = False) -> Array | None:
+def fit_harmonics(curve: Curve, period: float, *, drifts: bool = False) -> Array | None:
     """Mean, cosines and sines (1 + 2n, k) of a curve, values (m, k); then its drift, if asked for.
 
     None if it holds less than a period, or has fewer than `VALUES` in each.
@@ -27,7 +27,7 @@ def factors(curve: Curve, period: float, *, drifts: bool = False) -> Array | Non
     if cycles < CYCLES or len(times) < VALUES * cycles:
         return None
     phases = 2.0 * math.pi * times / period
-    terms = columns(phases)
+    terms = harmonics(phases)
     if drifts:
         terms = np.column_stack([terms, phases])
     return np.asarray(np.linalg.lstsq(terms, curve.values, rcond=None)[0])
@@ -35,11 +35,11 @@ def factors(curve: Curve, period: float, *, drifts: bool = False) -> Array | Non
 
 def amplitude(curve: Curve, period: float) -> float:
     """Amplitude of the first harmonic of a curve, values (m,); nan where none can be fitted."""
-    fitted = factors(curve, period, drifts=True)
+    fitted = fit_harmonics(curve, period, drifts=True)
     return math.nan if fitted is None else math.hypot(float(fitted[1]), float(fitted[2]))
 
 
-def columns(phases: Array) -> Array:
+def harmonics(phases: Array) -> Array:
     """One, cosines and sines (m, 1 + 2n) of phases (m,) rad and of their multiples."""
     parts = [np.ones_like(phases)]
     for n in range(1, HARMONICS + 1):

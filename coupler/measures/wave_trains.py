@@ -23,7 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import NonNegativeInt
 
-from quintet.coupler.measures.harmonic import columns, factors
+from quintet.coupler.measures.harmonic import fit_harmonics, harmonics
 from quintet.coupler.measures.time_series import Curve
 from quintet.interfaces.component import Array
 from quintet.interfaces.params import Number, Positive, parameters
@@ -83,7 +83,7 @@ NONE = Train(math.nan, math.nan, math.nan)
 
 def fit(curves: Curve, line: WaveLine) -> Train:
     """Fit two wave trains to curves, values (m, k), at the places of a line."""
-    fitted = factors(curves, line.period)
+    fitted = fit_harmonics(curves, line.period)
     if fitted is None:
         return NONE
     amplitudes = fitted[1] - 1j * fitted[2]  # (k,) B
@@ -108,7 +108,7 @@ def _tell_apart(places: Array, length: float) -> bool:
 def _ranges(fitted: Array) -> Array:
     """From the lowest to the highest value (k,) of harmonics with factors (1 + 2n, k)."""
     phases = np.linspace(0.0, 2.0 * math.pi, PHASES, endpoint=False)
-    return np.asarray(np.ptp(columns(phases) @ fitted, axis=0))
+    return np.asarray(np.ptp(harmonics(phases) @ fitted, axis=0))
 
 
 def _trains(places: Array, amplitudes: Complex, length: float) -> tuple[Complex, float]:

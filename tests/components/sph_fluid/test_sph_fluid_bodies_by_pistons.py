@@ -1,35 +1,21 @@
-"""Bodies that float beside pistons: what is removed, and what pushes them."""
+"""Water is removed where bodies begin beside pistons, and pushes them as beside walls."""
 
 import numpy as np
 import pytest
 from fluid_params import fluid_params
 from sampled_bodies import BOX, mirrors
+from test_sph_fluid_pistons import BASE, OBSTACLE, SPACING, STAY, piston
 
 from quintet.components.sph_fluid.component import SphFluid
 from quintet.interfaces.component import outputs_of
 
-SPACING = 0.02
-BASE = {
-    "spacing": SPACING,
-    "sound_speed": 20.0,
-    "dimensions": 2,
-    "kernel": "wendland",
-    "density_diffusion": 0.1,
-    "integration": "symplectic",
-    "viscosity.artificial": 0.05,
-    "boundary.method": "mdbc",
-    "boundary.walls": ((-0.1, 0.0, 0.0), (0.4, 1.0, 0.4)),
-    "boundary.obstacles": [((0.0, 0.0, 0.0), (0.06, 1.0, 0.4))],  # all across the tank
-    "fluid": [((0.06, 0.0, 0.0), (0.4, 1.0, 0.2))],
-    "remove_inside_bodies": True,
-}
-STAY = {"times": [0.0, 9.0], "displacement": [[0.0, 0.0, 0.0], [0.0, 0.0, 0.0]]}
-PISTON = {"boundary.pistons": [{"part": "obstacles.0", "motion": STAY}]}
+TANK_WITH_BLOCK = BASE | OBSTACLE | {"remove_inside_bodies": True}
+PISTON = piston("obstacles.0", STAY)
 
 
 def floating(tables):
     """Fluid in which a square of 4 spacings is held, half under water, and its samples."""
-    fluid = SphFluid(fluid_params(**BASE | tables))
+    fluid = SphFluid(fluid_params(**TANK_WITH_BLOCK | tables))
     edge, centre = 4.0 * SPACING, np.array([0.22, 0.5, 0.2])
     across = (np.arange(4) - 1.5) * SPACING
     arm = np.array([[x, 0.0, z] for x in across for z in across])
