@@ -201,10 +201,7 @@ def join_ports(
         participant.bind(static[name], **header)
     begin(coupling)
     # Motion is known at once; forces, which follow from it, are zero before the first window.
-    outputs = {
-        name: participant.give(wanted[name], exchange.gives[name])
-        for name, participant in participants.items()
-    }
+    outputs = _give_all(exchange, participants, wanted)
     initial = {name: {**described[name], **fields} for name, fields in outputs.items()}
     if refused := [text for link in exchange.links for text in link.refusals(initial)]:
         raise SceneError(refused)
@@ -213,16 +210,28 @@ def join_ports(
         participant.sums = AnswerSums(
             exchange.takes[name], exchange.gives[name], exchange.sharing(name)
         )
-    _begin(coupling, outputs)
     for name, participant in participants.items():
         numbers = [n for n, transfer in enumerate(exchange.transfers) if transfer.taker == name]
         instants = _instants(exchange, name, numbers, outputs)
         participant.prime(instants, shares=exchange.shares(name))
         coupling.ledger.primed(name, instants)
+    # A component may change by what it was primed with: a fluid loses what lies inside bodies.
+    _begin(coupling, _give_all(exchange, participants, wanted))
     for participant in participants.values():
         participant.order_prepare()  # all at the same time, for some compile
     for participant in participants.values():
         participant.prepared()
+
+
+def _give_all(
+    exchange: Exchange,
+    participants: Mapping[str, Participant],
+    wanted: Mapping[str, Iterable[str]],
+) -> dict[str, Fields]:
+    return {
+        name: participant.give(wanted[name], exchange.gives[name])
+        for name, participant in participants.items()
+    }
 
 
 def _instants(
