@@ -75,6 +75,7 @@ def render(kind: str, folder: Path) -> str:
             {"heading": "At a glance", "caption": CAPTIONS[kind], "data": data} for _, data in shown
         ],
         parts=list(PARTS[kind](content)),
+        command=content.get("command", ""),
         machine=page.machine_words(content.get("machine") or {}),
     )
 

@@ -2,7 +2,6 @@
 
 import os
 import platform
-import shlex
 import sys
 import time
 from collections.abc import Mapping, Sequence
@@ -25,7 +24,7 @@ from quintet.coupler.report.panels import can_draw
 from quintet.coupler.report.picture import Picture, draw_run
 from quintet.coupler.report.profiles import profiles_of
 from quintet.coupler.report.view_steps import view_files
-from quintet.coupler.scene.overrides import run_arguments
+from quintet.coupler.scene.overrides import command_line
 from quintet.coupler.scene.planned_times import cores_here, serial_of
 from quintet.coupler.scene.scene import ComponentPlan, OutputSettings, Scene
 from quintet.interfaces.errors import SceneError
@@ -46,7 +45,7 @@ def headline(scene: Scene, outcome: dict[str, Any]) -> dict[str, Any]:
         "transport": scene.transport,
         **outcome,
         "machine": machine(),
-        "command": shlex.join(["quintet", "run", *run_arguments(**scene.asked)]),
+        "command": command_line("run", **scene.asked),
         "asked": scene.asked,
     }
 

@@ -23,6 +23,11 @@ class KeyRange:
         """Keys as they were given."""
         return ",".join(self.keys)
 
+    @property
+    def text(self) -> str:
+        """The range as the command line has it."""
+        return f"{self.name}={self.low!r}:{self.high!r}"
+
     def settings(self, value: float) -> dict[str, float]:
         """Settings by dotted path."""
         return dict.fromkeys(self.keys, value)

@@ -2,6 +2,7 @@
 
 import os
 import re
+import shlex
 import sys
 from collections import Counter
 from collections.abc import Iterable, Mapping
@@ -152,3 +153,17 @@ def run_arguments(
     line += ["--transport", transport] if transport else []
     line += [word for swap in swaps for word in ("--swap", swap)]
     return [*line, *(word for setting in settings for word in ("--set", setting))]
+
+
+def command_line(
+    command: str,
+    scene: str,
+    preset: str = "",
+    settings: Iterable[str] = (),
+    swaps: Iterable[str] = (),
+    transport: str = "",
+    words: Iterable[str] = (),
+) -> str:
+    """Write a command of quintet about a scene for a shell; `words` are its own options."""
+    arguments = run_arguments(scene, preset, settings, swaps, transport)
+    return shlex.join(["quintet", command, *arguments, *words])

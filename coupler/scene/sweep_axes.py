@@ -27,6 +27,11 @@ class Axis:
         """Path and unit, as tables and pictures have it."""
         return f"{self.path} [{self.unit}]" if self.unit else self.path
 
+    @property
+    def text(self) -> str:
+        """The axis as the command line has it."""
+        return f"{self.path}={','.join(value_text(value, self.path) for value in self.values)}"
+
 
 def read_axes(options: Iterable[str]) -> list[Axis]:
     """Read ``PATH=VALUE,VALUE`` of the command line; every mistake at once."""

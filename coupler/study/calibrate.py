@@ -28,6 +28,7 @@ from quintet.coupler.report.sweep_report import write_csv
 from quintet.coupler.run import results
 from quintet.coupler.run.folder import share
 from quintet.coupler.scene.key_ranges import KeyRange, read_ranges
+from quintet.coupler.scene.overrides import command_line
 from quintet.coupler.scene.read import load
 from quintet.coupler.scene.sweep_axes import Axis
 from quintet.coupler.study.ensemble import scatter_of
@@ -59,6 +60,8 @@ class Calibration(RunSeries):
         Name of the scene.
     folder : Path
         With a folder for each run.
+    command : str
+        Repeats it.
     to : str
         Name of the expectation.
     unit : str
@@ -76,6 +79,7 @@ class Calibration(RunSeries):
 
     scene: str
     folder: Path
+    command: str
     to: str
     unit: str
     rise: float
@@ -89,7 +93,8 @@ class Calibration(RunSeries):
         names = ("scene", "to", "unit", "rise", "rise_from", "misfit", "keys", "rows")
         content = {name: getattr(self, name) for name in names}
         return {**content, "failed": [row["run"] for row in self.failed]} | {
-            "machine": results.machine()
+            "machine": results.machine(),
+            "command": self.command,
         }
 
 
@@ -158,7 +163,11 @@ def calibrate(
         rise, rise_from = scatter_of(ensemble, to), f"the standard deviation of {ensemble}"
     folder_name, _ = plan("calibrate", asked, _corners(ranges), jobs, retry)
     folder = share("calibrate", folder_name, (NAME, TABLE, PICTURE, JOURNAL, REPORT), out)
-    fitted = Calibration(folder_name, folder, to, expectation.unit, rise, rise_from)
+    words = [word for span in ranges for word in ("--over", span.text)]
+    words += ["--to", to, "--runs", str(runs), "--seed", str(seed)]
+    words += ["--ensemble", str(ensemble)] if ensemble else []
+    command = command_line("calibrate", *asked, words=words)
+    fitted = Calibration(folder_name, folder, command, to, expectation.unit, rise, rise_from)
     print(f"{folder_name}: {runs} runs, {jobs} at once, in {folder}", flush=True)
     reference = reference_value(expectation, scene.folder)
     series = _Series(fitted, asked, ranges, expectation, reference, jobs, retry, executor)

@@ -26,6 +26,7 @@ from quintet.coupler.report.sweep_report import write_csv
 from quintet.coupler.run import results
 from quintet.coupler.run.folder import share
 from quintet.coupler.scene.ensemble_table import Perturbation, draw_settings
+from quintet.coupler.scene.overrides import command_line
 from quintet.coupler.scene.read import load_variants
 from quintet.coupler.scene.scene import Scene
 from quintet.coupler.scene.sweep_axes import Axis
@@ -48,6 +49,8 @@ class Ensemble(RunSeries):
         Name of the scene.
     folder : Path
         With a folder for each run.
+    command : str
+        Repeats it.
     seed : int
     perturbations : dict
         By name: keys and distribution.
@@ -62,6 +65,7 @@ class Ensemble(RunSeries):
 
     scene: str
     folder: Path
+    command: str
     seed: int
     perturbations: dict[str, Row]
     rows: list[Row] = field(default_factory=list)
@@ -78,6 +82,7 @@ class Ensemble(RunSeries):
             "expectations": self.expectations,
             "rows": self.rows,
             "machine": results.machine(),
+            "command": self.command,
         }
 
 
@@ -137,7 +142,9 @@ def ensemble(
     products = draw_settings(variants.ensemble, seed, runs)
     name, planned = plan("ensemble", asked, products, jobs, retry)
     folder = share("ensemble", name, (NAME, TABLE, RUNS, PICTURE, JOURNAL, REPORT), out)
-    sampled = Ensemble(name, folder, seed, _distributions(variants.ensemble))
+    words = ("--runs", str(runs), "--seed", str(seed))
+    command = command_line("ensemble", *asked, words=words)
+    sampled = Ensemble(name, folder, command, seed, _distributions(variants.ensemble))
     axes = [Axis(key, ()) for key in products[0]]
     print(f"{name}: {runs} runs, {jobs} at once, in {folder}", flush=True)
     tasks = [replace(job, place=folder) for job in planned]

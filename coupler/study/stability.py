@@ -21,6 +21,7 @@ from quintet.coupler.report.stability_tables import markdown, print_limits
 from quintet.coupler.run import results
 from quintet.coupler.run.folder import begin_series, discard_former, share
 from quintet.coupler.run.signals import StopRequest
+from quintet.coupler.scene.overrides import command_line
 from quintet.coupler.scene.quantity_texts import units_of_keys
 from quintet.coupler.scene.read import library, load_variants, parse
 from quintet.coupler.scene.scene import Scene
@@ -87,7 +88,8 @@ def run_stability(options: argparse.Namespace) -> int:
         stop = StopRequest()
         with stop.listening():
             limits = Searches(options, stop).find(options.scene, variants.stability, place.path)
-        content = _write(name, scene, limits, place.path, _asked(options))
+        command = command_line("stability", *asked)
+        content = _write(name, scene, limits, place.path, _asked(options), command)
         wanted.write(content)
         _show(content, place.path)
     return results.INTERRUPTED if stop() else _status(limits)
@@ -111,7 +113,10 @@ def _run_all(options: argparse.Namespace) -> int:
             summaries = Searches(options, stop).find(name, variants.stability, folder / name)
             if stop():
                 break
-            content[name] = _write(name, scene, summaries, folder / name, _asked(options))
+            command = command_line("stability", name)
+            content[name] = _write(
+                name, scene, summaries, folder / name, _asked(options), command
+            )
             ordered = [content[scene] for scene in sorted(content)]
             wanted.write(ordered)
             write_whole(folder / NAME, json.dumps(ordered, indent=2))
@@ -152,7 +157,9 @@ def _cheapest_first() -> list[str]:
     return sorted(minutes, key=lambda name: (minutes[name], name))
 
 
-def _write(name: str, scene: Scene, limits: list[Found], folder: Path, asked: Found) -> Found:
+def _write(
+    name: str, scene: Scene, limits: list[Found], folder: Path, asked: Found, command: str
+) -> Found:
     """Write the limits of a scene; return the content."""
     content = {
         "scene": name,
@@ -160,6 +167,7 @@ def _write(name: str, scene: Scene, limits: list[Found], folder: Path, asked: Fo
         "units": units_of_keys(scene, _keys_of(limits)),
         "limits": limits,
         "machine": results.machine(),
+        "command": command,
     }
     write_whole(folder / NAME, json.dumps(content, indent=2))
     return content

@@ -20,7 +20,7 @@ from quintet.coupler.report.work_precision import draw
 from quintet.coupler.run import results
 from quintet.coupler.run.folder import begin_series, discard_former
 from quintet.coupler.run.signals import StopRequest
-from quintet.coupler.scene.overrides import assignments
+from quintet.coupler.scene.overrides import assignments, command_line
 from quintet.coupler.scene.read import load, load_variants
 from quintet.coupler.scene.study_table import Refinement
 from quintet.coupler.study.child_run import ChildRun
@@ -104,6 +104,7 @@ def _run_all(
         folders = {refinement.label: folder / refinement.folder for refinement in refinements}
         summary = summarize(scene, refinements, rows, folders, options.error)
         summary |= beside.summary()
+        summary["command"] = _command(options)
         if options.error is not None:
             _check_offer(child, summary["wanted"])
         print_summary(summary)
@@ -114,6 +115,14 @@ def _run_all(
     if draw(summary, folder / PICTURE):
         print(f"drawn in {folder / PICTURE}")
     return status_of(summary, len(refinements))
+
+
+def _command(options: argparse.Namespace) -> str:
+    """The command that repeats a study."""
+    words = [] if options.error is None else ["--error", repr(options.error)]
+    words += [word for name in options.beside for word in ("--beside", name)]
+    asked = (options.scene, options.preset, options.settings, options.swap, options.transport)
+    return command_line("study", *asked, words=words)
 
 
 def date_of(folder: Path) -> str | None:

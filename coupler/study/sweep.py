@@ -17,7 +17,7 @@ from quintet.coupler.report.show import console
 from quintet.coupler.report.sweep_report import draw, table, write_csv
 from quintet.coupler.run import results
 from quintet.coupler.run.folder import share
-from quintet.coupler.scene.overrides import run_arguments
+from quintet.coupler.scene.overrides import command_line, run_arguments
 from quintet.coupler.scene.sweep_axes import Axis, combinations, read_axes
 from quintet.coupler.study.run_jobs import Row, RunSeries, check_numbers, run_jobs
 from quintet.coupler.study.sweep_plan import Asked, axes_of_jobs, plan
@@ -38,6 +38,8 @@ class Sweep(RunSeries):
         Name of the scene.
     folder : Path
         With a folder for each run.
+    command : str
+        Repeats it.
     axes : list of Axis
         Keys that are varied, and their values.
     rows : list of dict
@@ -47,6 +49,7 @@ class Sweep(RunSeries):
 
     scene: str
     folder: Path
+    command: str
     axes: list[Axis]
     rows: list[Row] = field(default_factory=list)
 
@@ -55,7 +58,7 @@ class Sweep(RunSeries):
         keys = {axis.path: list(axis.values) for axis in self.axes}
         units = {axis.path: axis.unit for axis in self.axes if axis.unit}
         content = {"scene": self.scene, "over": keys, "units": units, "rows": self.rows}
-        return {**content, "machine": results.machine()}
+        return {**content, "machine": results.machine(), "command": self.command}
 
 
 def run_sweep(options: argparse.Namespace) -> int:
@@ -143,7 +146,9 @@ def sweep(
     check_numbers("sweep", jobs, retry)
     scene, planned = plan("sweep", asked, combinations(axes), jobs, retry)
     folder = share("sweep", scene, (NAME, TABLE, PICTURE, JOURNAL, REPORT), out)
-    swept = Sweep(scene, folder, axes_of_jobs(axes, planned))
+    words = [word for axis in axes for word in ("--over", axis.text)]
+    command = command_line("sweep", *asked, words=words)
+    swept = Sweep(scene, folder, command, axes_of_jobs(axes, planned))
     tasks = [replace(job, place=folder) for job in planned]
     print(f"{scene}: {len(tasks)} runs, {jobs} at once, in {folder}", flush=True)
 

@@ -1,8 +1,10 @@
 """The page of a series has its tables and pictures, and needs nothing else."""
 
 import base64
+import html
 import io
 import re
+import shlex
 
 import pytest
 from PIL import Image
@@ -33,6 +35,10 @@ CASES = {
     "study": ((), ["2 of 2 runs done", "The cheapest refinement", "Observed orders", "CPU [s]"]),
     "sweep": (("--over", f"{STEP}=0.02,0.01"), ["2 of 2 runs done", STEP, "done, met"]),
     "ensemble": (("--runs", "3"), ["3 of 3 runs done", "What is uncertain", "stiffness"]),
+    "calibrate": (
+        ("--over", "components.spring.stiffness=90.0:110.0", "--to", "end", "--runs", "3"),
+        ["3 of 3 runs done", "What fits best"],
+    ),
     "stability": ((), ["limits found", "Limits", "bounds"]),
 }
 
@@ -45,6 +51,9 @@ def test_a_series_has_a_page(tmp_path, capsys, kind):
     command(kind, path, "--out", out, *arguments)
     assert command("report", out) == 0, capsys.readouterr().err
     page = (out / "report.html").read_text()
+    words_of_command = shlex.split(html.unescape(re.search("<pre>(.*)</pre>", page)[1]))
+    assert words_of_command[:3] == ["quintet", kind, str(path)]
+    assert list(arguments) == [word for word in words_of_command if word in arguments]
     assert not [word for word in words if word not in page]
     images = re.findall(r'src="data:image/png;base64,([^"]+)"', page)
     assert len(images) == 1
