@@ -114,9 +114,7 @@ def _run_all(options: argparse.Namespace) -> int:
             if stop():
                 break
             command = command_line("stability", name)
-            content[name] = _write(
-                name, scene, summaries, folder / name, _asked(options), command
-            )
+            content[name] = _write(name, scene, summaries, folder / name, _asked(options), command)
             ordered = [content[scene] for scene in sorted(content)]
             wanted.write(ordered)
             write_whole(folder / NAME, json.dumps(ordered, indent=2))
