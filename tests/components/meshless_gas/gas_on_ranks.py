@@ -1,4 +1,4 @@
-"""What test_gas_ranks.py runs on several ranks; rank 0 writes what came out."""
+"""Cases of a gas that test_gas_ranks.py runs on several ranks; rank 0 writes the results."""
 
 import json
 
@@ -39,7 +39,7 @@ BODIES = [
     },
 ]
 PARAMS = {
-    "bodies": {  # that move, cut holes and rub
+    "bodies": {  # that move, cut holes and have friction
         "gas": VISCOUS,
         "viscous": True,
         "initial": STREAM,
@@ -56,7 +56,7 @@ PARAMS = {
         "box": {"lowest": [0.0] * 3, "highest": [10.0] * 3, "spacing": 0.8, "jitter": 0.3},
         "neighbours": 14,
     },
-    "steady": {  # in steps of each node's own, to rest
+    "steady": {  # with local time steps, until it is steady
         "gas": AIR,
         "initial": STREAM,
         "box": {"lowest": [0.0, 0.0, 0.0], "highest": [1.0, 1.0, 1.0], "spacing": 0.05},
@@ -89,7 +89,7 @@ PARAMS = {
         "steady": {"steps": 20},
         "probes": [[-1.2, 0.0, 0.1]],
     },
-    "tube": {  # between walls that hold the gas, with places where it is read
+    "tube": {  # between walls that hold the gas, with probes
         "gas": VISCOUS,
         "viscous": True,
         "riemann": {
@@ -121,7 +121,7 @@ class Run(SolverRun):
         return min(self.solver.stable_dt(), 1.0)
 
     def failure(self):
-        """What is said, on all ranks, of the first state that is none after steps too long."""
+        """The error, the same on all ranks, after steps so long that a state is invalid."""
         text = ""
         if self.name == "tube":
             try:

@@ -15,38 +15,38 @@ def state(density: float, speed: float, pressure: float) -> dict[str, Any]:
     return {"density": density, "velocity": [speed, 0.0, 0.0], "pressure": pressure}
 
 
-def gas(resources: Resources = ONE_THREAD, **given: Any) -> MeshlessGas:
+def gas_in_box(resources: Resources = ONE_THREAD, **keys: Any) -> MeshlessGas:
     """A gas of gas constant 1 in a box of 1 m, with keys of a scene."""
     box = {"lowest": [0.0, 0.0, 0.0], "highest": [1.0, 1.0, 1.0], "spacing": 0.1, "jitter": 0.3}
-    table = {"gas": {"gas_constant": 1.0}, **given, "box": {**box, **given.get("box", {})}}
+    table = {"gas": {"gas_constant": 1.0}, **keys, "box": {**box, **keys.get("box", {})}}
     params, mistakes = read(MeshlessGasParams, table, "gas")
     assert not mistakes, mistakes
     return MeshlessGas(params, resources)
 
 
-def tube(nodes: int, left: Any, right: Any, **given: Any) -> MeshlessGas:
+def tube(nodes: int, left: Any, right: Any, **keys: Any) -> MeshlessGas:
     """A shock tube of 1 m, its diaphragm in the middle."""
     spacing = 1.0 / (nodes - 1)
-    sides = [state(*one) for one in (left, right)]
+    sides = [state(*side) for side in (left, right)]
     box = {"highest": [1.0, 0.0, 6.0 * spacing], "spacing": spacing}
-    return gas(
-        box=box | given.pop("box", {}),
+    return gas_in_box(
+        box=box | keys.pop("box", {}),
         riemann={"position": 0.5, "left": sides[0], "right": sides[1]},
         boundaries={
-            name: {"kind": "inflow", "state": one}
-            for name, one in zip(("x-", "x+"), sides, strict=True)
+            name: {"kind": "inflow", "state": side}
+            for name, side in zip(("x-", "x+"), sides, strict=True)
         },
-        **{"neighbours": 8, **given},
+        **{"neighbours": 8, **keys},
     )
 
 
-def run(made: MeshlessGas, end: float) -> MeshlessGas:
-    """Step it to a time [s]."""
-    while made.state.time < end * (1.0 - 1e-12):
-        made.step(min(made.stable_dt(), end - made.state.time))
-    return made
+def run(gas: MeshlessGas, end: float) -> MeshlessGas:
+    """Step a gas to a time [s]."""
+    while gas.state.time < end * (1.0 - 1e-12):
+        gas.step(min(gas.stable_dt(), end - gas.state.time))
+    return gas
 
 
-def given(made: MeshlessGas, key: str) -> Array:
-    """One of its outputs."""
-    return made.give(frozenset({key}))[key]
+def output(gas: MeshlessGas, key: str) -> Array:
+    """An output of a gas."""
+    return gas.give(frozenset({key}))[key]

@@ -1,4 +1,4 @@
-"""What test_gas_ranks.py runs on several ranks: sums of rows that lie on all of them."""
+"""Program of test_gas_ranks.py for several ranks: sums of rows that lie on all of them."""
 
 import numpy as np
 from mpi4py import MPI

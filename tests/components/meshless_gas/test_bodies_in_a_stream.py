@@ -32,7 +32,7 @@ class PushedWall(Walls):
 
 def sphere(**keys: object) -> MeshlessGas:
     """A coarse gas round a sphere at M = 3."""
-    given = {
+    table = {
         "axisymmetric": True,
         "gas": {"gas_constant": 1.0 / 1.4},
         "initial": STREAM,
@@ -43,7 +43,7 @@ def sphere(**keys: object) -> MeshlessGas:
             "exit": {"kind": "outflow"},
         },
     }
-    params, mistakes = read(MeshlessGas.Params, given | keys, "gas")
+    params, mistakes = read(MeshlessGas.Params, table | keys, "gas")
     assert not mistakes
     return MeshlessGas(params)
 
@@ -53,21 +53,22 @@ def test_a_uniform_pressure_pushes_a_closed_surface_nowhere() -> None:
     normal = np.stack([-np.cos(angle), 0.0 * angle, np.sin(angle)], axis=1)
     sizes = 2.0 * math.pi * np.sin(angle) * math.pi / 400
     still = np.zeros((400, 3))
-    whole = sums(np.full(400, 5.0), still, normal * sizes[:, None], sizes, True)
-    assert whole == pytest.approx(np.zeros(3), abs=1e-10)
-    half = sums(
+    total_force = sums(np.full(400, 5.0), still, normal * sizes[:, None], sizes, True)
+    assert total_force == pytest.approx(np.zeros(3), abs=1e-10)
+    half_force = sums(
         np.where(angle < 0.5 * math.pi, 5.0, 0.0), still, normal * sizes[:, None], sizes, True
     )
-    assert half[0] == pytest.approx(5.0 * math.pi, rel=1e-4)  # pressure times the cross-section
+    # Pressure times the cross-section.
+    assert half_force[0] == pytest.approx(5.0 * math.pi, rel=1e-4)
 
 
 def test_a_sphere_is_pushed_downstream_and_the_step_is_told() -> None:
     gas = sphere()
     for _ in range(60):
         gas.step(gas.stable_dt())
-    found = gas.give(frozenset(fields_of(gas.gives)))
-    assert 0.7 < found["body.drag_coefficient"][0] < 1.1  # a forebody at M = 3: 0.9
-    assert found["body.force"][0, 0] > 0.0
+    outputs = gas.give(frozenset(fields_of(gas.gives)))
+    assert 0.7 < outputs["body.drag_coefficient"][0] < 1.1  # a forebody at M = 3: 0.9
+    assert outputs["body.force"][0, 0] > 0.0
     with pytest.raises(StepError):
         for _ in range(60):
             gas.step(6.0 * gas.stable_dt())
@@ -77,20 +78,20 @@ def test_a_settled_flow_stands_still_and_says_so() -> None:
     gas = sphere(steady={"steps": 5, "change": 1.0, "force": 1.0})
     while math.isfinite(gas.stable_dt()):
         gas.step(gas.stable_dt())
-    kept = gas.save()
+    saved_state = gas.save()
     gas.step(1.0)
-    assert (gas.save()["conservative"] == kept["conservative"]).all()
+    assert (gas.save()["conservative"] == saved_state["conservative"]).all()
     assert gas.give(frozenset({"body.settled"}))["body.settled"] == 1.0
-    again = sphere(steady={"steps": 5, "change": 1.0, "force": 1.0})
-    again.load(kept)
-    assert math.isinf(again.stable_dt())
+    resumed = sphere(steady={"steps": 5, "change": 1.0, "force": 1.0})
+    resumed.load(saved_state)
+    assert math.isinf(resumed.stable_dt())
 
 
 def test_nothing_tells_whether_a_flow_has_settled_where_no_steady_says_when() -> None:
-    gas, judged = sphere(), sphere(steady={"steps": 5})
+    gas, steady_gas = sphere(), sphere(steady={"steps": 5})
     assert "body.settled" not in fields_of(gas.gives)
-    assert "body.settled" in fields_of(judged.gives)
-    assert judged.give(frozenset({"body.settled"}))["body.settled"] == 0.0
+    assert "body.settled" in fields_of(steady_gas.gives)
+    assert steady_gas.give(frozenset({"body.settled"}))["body.settled"] == 0.0
 
 
 def test_a_flow_settles_only_when_densities_and_forces_do() -> None:
@@ -136,10 +137,10 @@ def test_a_run_that_ends_before_its_flow_has_settled_warns():
 def test_what_does_not_fit_round_a_sphere_is_refused(
     keys: dict[str, object], sentence: str
 ) -> None:
-    given = {
+    table = {
         "axisymmetric": True,
         "initial": STREAM,
         "sphere": {"radius": 1.0, "points_around": 8, "layers": {"count": 8}},
     }
-    _, mistakes = read(MeshlessGas.Params, given | keys, "gas")
-    assert any(sentence in one for one in mistakes), mistakes
+    _, mistakes = read(MeshlessGas.Params, table | keys, "gas")
+    assert any(sentence in mistake for mistake in mistakes), mistakes

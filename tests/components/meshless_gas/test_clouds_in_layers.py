@@ -28,12 +28,12 @@ def meridian(reach: Reach = REACH, is_cross: bool = False) -> LayeredCloud:
 
 
 def test_layers_grow_by_one_factor_from_the_first_to_the_last() -> None:
-    found = geometric(np.array([0.01, 0.5]), np.array([2.0, 2.0]), 8)
-    assert found[[0, -1]].T == pytest.approx(np.array([[0.0, 2.0], [0.0, 2.0]]))
-    assert found[1, 0] == pytest.approx(0.01)
-    steps = np.diff(found[:, 0])
+    heights = geometric(np.array([0.01, 0.5]), np.array([2.0, 2.0]), 8)
+    assert heights[[0, -1]].T == pytest.approx(np.array([[0.0, 2.0], [0.0, 2.0]]))
+    assert heights[1, 0] == pytest.approx(0.01)
+    steps = np.diff(heights[:, 0])
     assert steps[1:] / steps[:-1] == pytest.approx(np.full(7, steps[1] / steps[0]))
-    assert found[1, 1] == pytest.approx(0.25)  # more than a share of the total: even layers
+    assert heights[1, 1] == pytest.approx(0.25)  # more than a share of the total: even layers
 
 
 def test_rings_of_a_sphere_have_its_area() -> None:
@@ -52,9 +52,9 @@ def test_gradients_round_an_axis_are_exact_of_linear_fields(is_cross: bool) -> N
     slope = np.array([0.3, -1.2, 0.7])
     field = cloud.positions @ slope
     rise = field[neighbours] - field[:, None]
-    found = (coefficients * rise[:, :, None]).sum(axis=1)
+    gradients = (coefficients * rise[:, :, None]).sum(axis=1)
     nodes = cloud.nodes
-    assert found[:nodes] == pytest.approx(np.tile(slope, (nodes, 1)), abs=1e-9)
+    assert gradients[:nodes] == pytest.approx(np.tile(slope, (nodes, 1)), abs=1e-9)
     assert neighbours.shape[1] == (6 if is_cross else 14)
 
 
@@ -79,9 +79,9 @@ def test_gas_leaves_downstream_only() -> None:
 
 def test_jitter_moves_nodes_within_alone() -> None:
     still, moved = meridian().cloud, meridian(REACH._replace(jitter=0.6)).cloud
-    differ = (still.positions != moved.positions).any(axis=1)
-    assert differ[still.kind == INNER].any()
-    assert not differ[(still.kind != INNER) & (still.kind != GHOST)].any()
+    is_moved = (still.positions != moved.positions).any(axis=1)
+    assert is_moved[still.kind == INNER].any()
+    assert not is_moved[(still.kind != INNER) & (still.kind != GHOST)].any()
 
 
 def test_a_geodesic_grid_covers_the_sphere() -> None:
@@ -92,16 +92,16 @@ def test_a_geodesic_grid_covers_the_sphere() -> None:
 
 
 def test_a_cap_has_the_area_of_its_sector_and_upright_neighbours() -> None:
-    made = sphere_cap(
+    layered_cloud = sphere_cap(
         SphereInStream(np.zeros(3), 2.0, 6.0), REACH._replace(rays=30, sector=1.2), SIDES
     )
-    cloud = made.cloud
+    cloud = layered_cloud.cloud
     wall = cloud.kind == SLIP
     area = (cloud.areas[wall] * cloud.normals[wall]).sum()
     assert area == pytest.approx(
         2.0 * math.pi * 4.0 * (1.0 - math.cos(1.2)), rel=0.1
     )  # whole triangles
-    apart = cloud.positions[made.off_wall[:, 0]] - cloud.positions[wall]
+    apart = cloud.positions[layered_cloud.off_wall[:, 0]] - cloud.positions[wall]
     along = (apart * cloud.normals[wall]).sum(axis=1)
     assert along == pytest.approx(np.sqrt((apart**2).sum(axis=1)))
 
@@ -112,8 +112,8 @@ def test_the_surface_of_a_cloud_closes_also_where_gas_leaves_it(
 ) -> None:
     reach = REACH._replace(rays=30, sector=1.2)
     cloud = make(SphereInStream(np.zeros(3), 2.0, 6.0), reach, SIDES).cloud
-    whole = np.abs(cloud.areas[:, 0]).sum()
-    assert abs(cloud.areas[:, 0].sum()) < 1e-3 * whole  # along the axis; rings close across it
+    total_area = np.abs(cloud.areas[:, 0]).sum()
+    assert abs(cloud.areas[:, 0].sum()) < 1e-3 * total_area  # along the axis; rings close across it
     leaving = cloud.kind == OUTFLOW
     assert (cloud.areas[leaving] * cloud.normals[leaving]).sum(axis=1).min() > 0.0
 
@@ -122,12 +122,12 @@ def test_a_plate_begins_at_its_leading_edge() -> None:
     faces = {"wall": "adiabatic", "ahead": "slip", "inlet": "inflow", "far": "outflow"}
     patches = {"wall": 1, "ahead": 2, "inlet": 3, "far": 4, "exit": 5}
     reach = REACH._replace(rays=16, first=0.01, is_cross=True)
-    made = plate(reach, 1.0, 0.5, 0.4, 0.02, Sides({**faces, "exit": "outflow"}, patches))
-    cloud = made.cloud
+    layered_cloud = plate(reach, 1.0, 0.5, 0.4, 0.02, Sides({**faces, "exit": "outflow"}, patches))
+    cloud = layered_cloud.cloud
     on_plate = cloud.patch == 1
     assert cloud.positions[on_plate, 0].min() == pytest.approx(0.0)
     assert cloud.positions[on_plate, 0].max() == pytest.approx(1.0)
     assert cloud.positions[:, 2].max() == pytest.approx(0.4)
     assert cloud.areas[cloud.positions[:, 2] == 0.0, 2].sum() == pytest.approx(1.5)
     assert cloud.volumes.sum() == pytest.approx(1.5 * 0.4)
-    assert made.neighbours.shape[1] == 4
+    assert layered_cloud.neighbours.shape[1] == 4

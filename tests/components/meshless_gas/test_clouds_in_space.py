@@ -21,18 +21,18 @@ OBLIQUE = np.array([0.8, 0.36, 0.48])  # of length 1
 @pytest.mark.parametrize(("is_cross", "most"), [(False, 20), (True, 8)])
 def test_shells_fill_their_space_and_nodes_have_those_around_them(is_cross, most):
     body = Body(centre=(0.0, 0.0, 0.0), radius=1.0, points_around=24, thickness=0.5, spacing=0.2)
-    made = shell(body, 1, 0, is_cross)
-    nodes, outer = made.cloud.nodes, 1.0 + body.heights[-1]
+    body_shell = shell(body, 1, 0, is_cross)
+    nodes, outer = body_shell.cloud.nodes, 1.0 + body.heights[-1]
     assert nodes == 162 * len(body.heights)
-    walls = made.cloud.areas[: made.rays]
+    walls = body_shell.cloud.areas[: body_shell.rays]
     assert math.isclose(np.sqrt((walls**2).sum(axis=1)).sum(), 4.0 * math.pi, rel_tol=1e-12)
     assert np.allclose(walls.sum(axis=0), 0.0, atol=1e-12)
-    assert not made.cloud.areas[made.rays :].any()
-    whole = 4.0 / 3.0 * math.pi * (outer**3 - 1.0)
-    assert math.isclose(made.cloud.volumes.sum(), whole, rel_tol=0.01)
-    near = made.home != np.arange(nodes)[:, None]
+    assert not body_shell.cloud.areas[body_shell.rays :].any()
+    volume = 4.0 / 3.0 * math.pi * (outer**3 - 1.0)
+    assert math.isclose(body_shell.cloud.volumes.sum(), volume, rel_tol=0.01)
+    near = body_shell.home != np.arange(nodes)[:, None]
     assert near.sum(axis=1).max() == most
-    pairs = {(i, j) for i in range(nodes) for j in made.home[i] if i != j}
+    pairs = {(i, j) for i in range(nodes) for j in body_shell.home[i] if i != j}
     assert all((j, i) in pairs for i, j in pairs)
 
 
@@ -70,7 +70,7 @@ def scene(share=0.0, gas=None, way=4.0, direction=(1.0, 0.0, 0.0), cross=True, *
     } | keys
 
 
-def made(settings):
+def gas_of(settings):
     params, mistakes = read(MeshlessGasParams, settings, "gas")
     assert not mistakes, mistakes
     return MeshlessGas(params)
@@ -79,7 +79,7 @@ def made(settings):
 @pytest.mark.full
 @pytest.mark.parametrize("cross", [False, True])
 def test_a_cloud_that_moves_with_the_gas_leaves_it_uniform_in_space(cross):
-    gas = made(scene(share=1.0, gas=-MACH * OBLIQUE, way=2.0, direction=OBLIQUE, cross=cross))
+    gas = gas_of(scene(share=1.0, gas=-MACH * OBLIQUE, way=2.0, direction=OBLIQUE, cross=cross))
     for _ in range(8):
         gas.step(gas.stable_dt())
     inner = gas.motion.domain.inner
@@ -105,30 +105,30 @@ def test_fresh_nodes_get_linear_fields_exactly_in_space():
 @pytest.mark.full
 def test_of_first_order_at_seams_states_are_constant_around_nodes_that_reach_over_them():
     settings = scene()
-    gas = made(settings)
+    gas = gas_of(settings)
     settings["moving"]["fringe_order"] = 1
-    other = made(settings)
+    first_order = gas_of(settings)
     gas.step(gas.stable_dt())
-    other.step(other.stable_dt())
-    across = other.motion.fringe.across
+    first_order.step(first_order.stable_dt())
+    across = first_order.motion.fringe.across
     assert len(across) > 100
-    assert not other.fluxes.gradients[across].any()
+    assert not first_order.fluxes.gradients[across].any()
     assert gas.fluxes.gradients[across].any()
-    assert other.fluxes.gradients[other.motion.domain.inner].any()
+    assert first_order.fluxes.gradients[first_order.motion.domain.inner].any()
 
 
 @pytest.mark.full
 def test_a_saved_state_goes_on_with_the_same_bits_in_space():
-    gas = made(scene(share=1.0, direction=OBLIQUE))
+    gas = gas_of(scene(share=1.0, direction=OBLIQUE))
     for _ in range(4):
         gas.step(gas.stable_dt())
-    kept, other = gas.save(), made(scene(share=1.0, direction=OBLIQUE))
-    other.load(kept)
-    for one in (gas, other):
+    saved_state, resumed = gas.save(), gas_of(scene(share=1.0, direction=OBLIQUE))
+    resumed.load(saved_state)
+    for solver in (gas, resumed):
         for _ in range(5):
-            one.step(one.stable_dt())
+            solver.step(solver.stable_dt())
     for name, array in gas.save().items():
-        assert np.array_equal(array, other.save()[name], equal_nan=True), name
+        assert np.array_equal(array, resumed.save()[name], equal_nan=True), name
 
 
 @pytest.mark.parametrize(
@@ -153,7 +153,7 @@ def test_what_clouds_in_space_do_not_go_with_is_refused(change, sentence):
         for face in ("y-", "y+"):
             settings["boundaries"].pop(face)
     with pytest.raises(SceneError, match=sentence):
-        made(settings)
+        gas_of(settings)
 
 
 def test_shells_that_end_in_a_plane_fill_half_of_their_space():
@@ -162,19 +162,19 @@ def test_shells_that_end_in_a_plane_fill_half_of_their_space():
         first_spacing=0.05,
         sector=0.5 * math.pi, first_spacing_at_sector=0.06,
     )  # fmt: skip
-    made = shell(body, 1, 0, True)
-    positions, outer = made.cloud.positions, 1.0 + body.heights[-1]
+    body_shell = shell(body, 1, 0, True)
+    positions, outer = body_shell.cloud.positions, 1.0 + body.heights[-1]
     assert positions[:, 0].max() < 1e-12
-    assert np.allclose(positions[made.leaving, 0], 0.0, atol=1e-12)
-    assert len(made.leaving) % (len(body.heights) - 1) == 0
-    walls = made.cloud.areas[: made.rays]
+    assert np.allclose(positions[body_shell.leaving, 0], 0.0, atol=1e-12)
+    assert len(body_shell.leaving) % (len(body.heights) - 1) == 0
+    walls = body_shell.cloud.areas[: body_shell.rays]
     assert np.allclose(walls.sum(axis=0), [-math.pi, 0.0, 0.0], atol=0.02)
-    whole = 2.0 / 3.0 * math.pi * (outer**3 - 1.0)
-    assert math.isclose(made.cloud.volumes.sum(), whole, rel_tol=0.02)
+    volume = 2.0 / 3.0 * math.pi * (outer**3 - 1.0)
+    assert math.isclose(body_shell.cloud.volumes.sum(), volume, rel_tol=0.02)
     # Beside each lies one that is advanced, nearer to the axis and of the same shell.
-    apart = positions[made.before] - positions[made.leaving]
+    apart = positions[body_shell.before] - positions[body_shell.leaving]
     assert (apart[:, 0] < 0.0).all()
-    assert np.isin(made.cloud.kind[made.before], 0).all()
+    assert np.isin(body_shell.cloud.kind[body_shell.before], 0).all()
     assert np.sqrt((apart**2).sum(axis=1)).max() < 0.5
 
 
@@ -185,12 +185,14 @@ def drag(share, direction):
     body |= {"points_around": 36, "spacing": 0.2, "thickness": 0.75}
     body.pop("first_spacing")
     settings["box"]["spacing"] = 0.2
-    gas, end, found = made(settings), 4.0 / MACH, []
+    gas, end, coefficients = gas_of(settings), 4.0 / MACH, []
     while gas.state.time < end - 1e-12:
         gas.step(min(gas.stable_dt(), end - gas.state.time))
         if gas.state.time > 0.5 * end:
-            found.append(gas.give(frozenset(["bodies.coefficient"]))["bodies.coefficient"][0])
-    return float(np.mean(found, axis=0) @ np.array(direction))
+            coefficients.append(
+                gas.give(frozenset(["bodies.coefficient"]))["bodies.coefficient"][0]
+            )
+    return float(np.mean(coefficients, axis=0) @ np.array(direction))
 
 
 @pytest.mark.full

@@ -20,15 +20,15 @@ TABLE = {
 
 def coefficient(name, reynolds, mach):
     law = laws.DRAG[name]
-    found = laws.drag_factor(law, reynolds, mach, mach / reynolds, 1.0, GAMMA)
-    return 24.0 / reynolds * found
+    factor = laws.drag_factor(law, reynolds, mach, mach / reynolds, 1.0, GAMMA)
+    return 24.0 / reynolds * factor
 
 
 @pytest.mark.parametrize("reynolds", TABLE)
 @pytest.mark.parametrize(("name", "row"), [("loth", 0), ("henderson", 1)])
 def test_drag_coefficients_are_those_of_the_table(name, row, reynolds):
-    found = [coefficient(name, reynolds, mach) for mach in MACHS]
-    assert found == pytest.approx(TABLE[reynolds][row], abs=6e-4)
+    coefficients = [coefficient(name, reynolds, mach) for mach in MACHS]
+    assert coefficients == pytest.approx(TABLE[reynolds][row], abs=6e-4)
 
 
 def test_incompressible_drag_has_its_known_values():
@@ -41,8 +41,8 @@ def test_incompressible_drag_has_its_known_values():
 @pytest.mark.parametrize("name", laws.DRAG)
 def test_drag_at_rest_in_a_dense_gas_is_that_of_stokes(name):
     assert laws.drag_factor(laws.DRAG[name], 0.0, 0.0, 0.0, 1.0, GAMMA) == 1.0
-    close = laws.drag_factor(laws.DRAG[name], 1e-4, 1e-8, 1e-4, 1.0, GAMMA)
-    assert close == pytest.approx(1.0, abs=2e-3)
+    factor = laws.drag_factor(laws.DRAG[name], 1e-4, 1e-8, 1e-4, 1.0, GAMMA)
+    assert factor == pytest.approx(1.0, abs=2e-3)
 
 
 @pytest.mark.parametrize("name", ["henderson", "loth"])
@@ -50,8 +50,8 @@ def test_drag_of_free_molecules_at_rest_is_that_of_epstein(name):
     """f = 1/(c Kn), c = 3.3 (Cunningham's slip for Kn → ∞, 2.514 + 0.8), to 10 %."""
     rarefied = 1e3
     knudsen = math.sqrt(0.5 * math.pi * GAMMA) * rarefied
-    found = laws.drag_factor(laws.DRAG[name], 1e-8, 1e-5, rarefied, 1.0, GAMMA)
-    assert found * knudsen == pytest.approx(1.0 / 3.3, rel=0.1)
+    factor = laws.drag_factor(laws.DRAG[name], 1e-8, 1e-5, rarefied, 1.0, GAMMA)
+    assert factor * knudsen == pytest.approx(1.0 / 3.3, rel=0.1)
 
 
 def test_heat_of_still_gas_has_a_nusselt_number_of_two():
@@ -60,9 +60,9 @@ def test_heat_of_still_gas_has_a_nusselt_number_of_two():
 
 
 def test_heat_of_moving_gas_has_its_known_values():
-    known = 2.0 + 0.6 * 10.0 * 0.72 ** (1.0 / 3.0)
-    assert laws.nusselt(laws.RANZ_MARSHALL, 100.0, 0.0, 0.0, 0.72) == pytest.approx(known)
+    ranz_marshall = 2.0 + 0.6 * 10.0 * 0.72 ** (1.0 / 3.0)
+    assert laws.nusselt(laws.RANZ_MARSHALL, 100.0, 0.0, 0.0, 0.72) == pytest.approx(ranz_marshall)
     # Two correlations of the same dense gas, at a small Mach number.
-    other = laws.nusselt(laws.FOX, 100.0, 0.01, 1e-4, 0.72)
-    assert other == pytest.approx(known, rel=0.05)
+    fox = laws.nusselt(laws.FOX, 100.0, 0.01, 1e-4, 0.72)
+    assert fox == pytest.approx(ranz_marshall, rel=0.05)
     assert laws.nusselt(laws.FOX, 1.0, 2.0, 2.0, 0.72) < 0.4  # few molecules arrive

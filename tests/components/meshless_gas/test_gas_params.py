@@ -1,4 +1,4 @@
-"""What does not fit together in the parameters of a gas is refused with what to do."""
+"""Parameters of a gas that contradict each other are refused with advice."""
 
 import pytest
 
@@ -36,7 +36,7 @@ def sphere(velocity, axisymmetric=True, **keys):
 
 
 @pytest.mark.parametrize(
-    ("keys", "said"),
+    ("keys", "sentence"),
     [
         ({"box": BOX, "local_steps": True, "particles": POINTS}, "Leave out local_steps"),
         ({"box": BOX, "steady": {}, "particles": POINTS}, "Leave out local_steps"),
@@ -65,10 +65,10 @@ def sphere(velocity, axisymmetric=True, **keys):
         ({}, "found none"),
     ],
 )
-def test_what_does_not_go_together_is_refused(keys, said):
+def test_what_does_not_go_together_is_refused(keys, sentence):
     table = {"gas": {"gas_constant": 1.0}, "initial": REST, **keys}
     _, mistakes = read(MeshlessGasParams, table, "gas")
-    assert any(said in one for one in mistakes), mistakes
+    assert any(sentence in mistake for mistake in mistakes), mistakes
 
 
 def test_a_sphere_in_space_may_lie_off_the_axis_x():

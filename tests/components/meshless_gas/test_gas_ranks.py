@@ -40,8 +40,8 @@ def test_the_case_with_bodies_cuts_holes_again(folder):
 
 
 def test_a_failed_step_is_told_as_on_one_rank(folder):
-    said = str(np.load(folder / "tube-2.npz")["failure"])
-    assert "density and pressure must stay above 0" in said
+    message = str(np.load(folder / "tube-2.npz")["failure"])
+    assert "density and pressure must stay above 0" in message
 
 
 def test_more_ranks_than_nodes_are_refused():

@@ -37,7 +37,7 @@ def params_of(**body):
     return read(MeshlessGasParams, settings, "gas")
 
 
-def in_the_mean(**body):
+def mean_standoff_and_pressure(**body):
     """Stand-off in radii and highest pressure on the wall over the pitot pressure."""
     params, mistakes = params_of(**body)
     assert not mistakes
@@ -74,12 +74,12 @@ def test_layers_are_finest_at_the_shock_and_widen_away_from_it():
 
 
 def test_layers_a_quarter_as_thick_halve_the_error_of_the_stand_off():
-    standoff, pressure = in_the_mean()
+    standoff, pressure = mean_standoff_and_pressure()
     assert 0.15 < standoff / STANDOFF - 1.0 < 0.22
-    finer, better = in_the_mean(**FINE)
-    assert 0.0 < finer / STANDOFF - 1.0 < 0.6 * (standoff / STANDOFF - 1.0)
+    finer_standoff, finer_pressure = mean_standoff_and_pressure(**FINE)
+    assert 0.0 < finer_standoff / STANDOFF - 1.0 < 0.6 * (standoff / STANDOFF - 1.0)
     assert abs(pressure - 1.0) < 0.04
-    assert abs(better - 1.0) < 0.025
+    assert abs(finer_pressure - 1.0) < 0.025
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,4 @@
-"""A gas without particles neither imports nor compiles what exchanges with them."""
+"""A gas without particles neither imports nor compiles the kernels of their exchange."""
 
 import subprocess
 import sys
@@ -20,5 +20,5 @@ assert loaded in sys.modules
 
 
 def test_without_particles_their_kernels_are_not_imported():
-    done = subprocess.run([sys.executable, "-c", PROGRAM], capture_output=True, text=True)
-    assert done.returncode == 0, done.stderr
+    process = subprocess.run([sys.executable, "-c", PROGRAM], capture_output=True, text=True)
+    assert process.returncode == 0, process.stderr

@@ -1,9 +1,9 @@
-"""Limiters of slopes: what lets no total variation grow, and tubes computed with each."""
+"""Limiters of slopes let no total variation grow; tubes are computed with each limiter."""
 
 from itertools import pairwise
 
 import pytest
-from gases import SOD, given, run, tube
+from gases import SOD, output, run, tube
 
 from quintet.components.meshless_gas.exact.riemann import Side, star
 from quintet.components.meshless_gas.laws.limiters import LAWS, NAMED
@@ -22,9 +22,9 @@ def change(name, upwind, across):
 def test_a_limited_change_lets_no_total_variation_grow(name):
     # Sweby, SIAM J. Numer. Anal. 21 (1984) 995: between 0 and each of both differences.
     for upwind, across in DIFFERENCES:
-        one = change(name, upwind, across)
-        assert 0.0 <= one <= min(upwind, across) * (1.0 + 1e-12)
-        assert change(name, -upwind, -across) == -one
+        limited = change(name, upwind, across)
+        assert 0.0 <= limited <= min(upwind, across) * (1.0 + 1e-12)
+        assert change(name, -upwind, -across) == -limited
         assert change(name, upwind, -across) == 0.0
     assert change(name, 0.7, 0.7) == pytest.approx(0.35)
 
@@ -42,7 +42,7 @@ VAN_ALBADA = {"limiter": "van_albada"}
 
 
 @pytest.mark.parametrize(
-    ("keys", "said"),
+    ("keys", "sentence"),
     [
         ({"limiter": "superbee", "limiter_threshold": 1e-3}, "is of van Albada's limiter"),
         ({"limiter": "superbee", "limiter_threshold": 0.0}, None),
@@ -52,25 +52,27 @@ VAN_ALBADA = {"limiter": "van_albada"}
         ({"limiter_threshold": 1e-3}, 'say limiter = "van_albada"'),
     ],
 )
-def test_a_threshold_is_van_albadas(keys, said):
+def test_a_threshold_is_van_albadas(keys, sentence):
     box = {"lowest": [0.0] * 3, "highest": [1.0, 0.0, 1.0], "spacing": 0.1}
     table = {"box": box, "initial": {"density": 1.0, "pressure": 1.0}, **keys}
     mistakes = read(MeshlessGasParams, table, "gas")[1]
-    assert len(mistakes) == (said is not None) and all(said in one for one in mistakes)
+    assert len(mistakes) == (sentence is not None) and all(
+        sentence in mistake for mistake in mistakes
+    )
 
 
 def test_sods_tube_is_of_first_order_and_does_not_overshoot():
     pressure, velocity = star(Side(*SOD[0]), Side(*SOD[1]), 1.4)
     errors = []
     for nodes in (100, 200, 400):
-        made = run(tube(nodes, *SOD, limiter="superbee"), 0.2)
-        errors.append(given(made, "error.density")[0])
-        place, state = made.motion.domain.cloud.positions[: made.items(), 0], made.state.primitive
+        gas = run(tube(nodes, *SOD, limiter="superbee"), 0.2)
+        errors.append(output(gas, "error.density")[0])
+        x, state = gas.motion.domain.cloud.positions[: gas.items(), 0], gas.state.primitive
         for q, low, high in ((0, SOD[1][0], SOD[0][0]), (4, SOD[1][2], SOD[0][2])):
             assert low - 1e-3 < state[:, q].min() and state[:, q].max() < high + 1e-3
         assert state[:, 1].min() > -2e-3 and state[:, 1].max() < velocity + 0.02
         # From the rarefaction to the contact, and from there to the shock.
-        near = (place > 0.6) & (place < 0.6854)
+        near = (x > 0.6) & (x < 0.6854)
         behind = SOD[0][0] * (pressure / SOD[0][2]) ** (1.0 / 1.4)
         assert state[near, 0].max() < behind + 0.01
     assert errors[1] < 4.3e-3
@@ -97,4 +99,4 @@ def test_tubes_are_computed_with_every_limiter(name, sod, noh, blast):
         ((1.0, 0.0, 1000.0), (1.0, 0.0, 0.01), 0.012, blast),
     ]
     for left, right, end, within in tubes:
-        assert given(run(tube(200, left, right, limiter=name), end), "error.density")[0] < within
+        assert output(run(tube(200, left, right, limiter=name), end), "error.density")[0] < within

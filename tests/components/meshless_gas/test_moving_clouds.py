@@ -63,51 +63,51 @@ def params_of(settings):
     return params
 
 
-def made(settings):
+def gas_of(settings):
     return MeshlessGas(params_of(settings))
 
 
-def flown(gas, end):
-    """Coefficients of drag, and pressures of the wall, over the second half of a flight."""
+def mean_drag_and_pressure(gas, end):
+    """Mean drag coefficient and mean wall pressures of the second half of a flight."""
     drags, pressures = [], []
     while gas.state.time < end - 1e-12:
         gas.step(min(gas.stable_dt(), end - gas.state.time))
         if gas.state.time > 0.5 * end:
-            found = gas.give(frozenset(["bodies.coefficient", "surface.pressure"]))
-            drags.append(found["bodies.coefficient"][0, 0])
-            pressures.append(found["surface.pressure"])
+            outputs = gas.give(frozenset(["bodies.coefficient", "surface.pressure"]))
+            drags.append(outputs["bodies.coefficient"][0, 0])
+            pressures.append(outputs["surface.pressure"])
     return np.mean(drags), np.mean(pressures, axis=0)
 
 
 @pytest.fixture(scope="module")
-def fixed():
-    return flown(made(scene()), WAY * RADIUS / MACH)
+def fixed_loads():
+    return mean_drag_and_pressure(gas_of(scene()), WAY * RADIUS / MACH)
 
 
 @pytest.mark.parametrize("share", [0.5, 1.0])
-def test_a_body_that_moves_feels_what_one_in_a_stream_feels(fixed, share):
-    drag, pressure = flown(made(scene(share)), WAY * RADIUS / MACH)
-    assert abs(drag / fixed[0] - 1.0) < 0.005
-    assert np.abs(pressure - fixed[1]).max() < 0.01 * fixed[1].max()
+def test_a_body_that_moves_feels_what_one_in_a_stream_feels(fixed_loads, share):
+    drag, pressure = mean_drag_and_pressure(gas_of(scene(share)), WAY * RADIUS / MACH)
+    assert abs(drag / fixed_loads[0] - 1.0) < 0.005
+    assert np.abs(pressure - fixed_loads[1]).max() < 0.01 * fixed_loads[1].max()
 
 
 @pytest.mark.full
 def test_a_body_flies_through_a_finer_part_of_a_box_as_through_a_fine_one():
-    whole, parts = scene(1.0), scene(1.0)
-    for one in (whole, parts):
-        one["box"] |= {"lowest": [-3.0, 0.0, -3.0], "highest": [WAY * RADIUS + 3.0, 0.0, 3.0]}
+    uniform, refined = scene(1.0), scene(1.0)
+    for settings in (uniform, refined):
+        settings["box"] |= {"lowest": [-3.0, 0.0, -3.0], "highest": [WAY * RADIUS + 3.0, 0.0, 3.0]}
     path = {"lowest": [-1.9, 0.0, -1.6], "highest": [WAY * RADIUS + 1.6, 0.0, 1.6]}
-    parts["box"] |= {"spacing": 0.25, "refinements": [path]}
-    fine, coarse = made(whole), made(parts)
+    refined["box"] |= {"spacing": 0.25, "refinements": [path]}
+    fine, coarse = gas_of(uniform), gas_of(refined)
     assert coarse.items() < 0.65 * fine.items()
-    drag, pressure = flown(fine, WAY * RADIUS / MACH)
-    found, pressures = flown(coarse, WAY * RADIUS / MACH)
-    assert abs(found / drag - 1.0) < 0.002
-    assert np.abs(pressures - pressure).max() < 0.005 * pressure.max()
+    drag, pressure = mean_drag_and_pressure(fine, WAY * RADIUS / MACH)
+    coarse_drag, coarse_pressure = mean_drag_and_pressure(coarse, WAY * RADIUS / MACH)
+    assert abs(coarse_drag / drag - 1.0) < 0.002
+    assert np.abs(coarse_pressure - pressure).max() < 0.005 * pressure.max()
 
 
 def test_a_cloud_that_moves_with_the_gas_leaves_it_uniform():
-    gas = made(scene(share=1.0, gas=[-MACH, 0.0, 0.0]))
+    gas = gas_of(scene(share=1.0, gas=[-MACH, 0.0, 0.0]))
     for _ in range(12):
         gas.step(gas.stable_dt())
     inner = gas.motion.domain.inner
@@ -126,7 +126,7 @@ def about_an_axis(**body):
 
 
 def test_a_sphere_that_moves_with_the_gas_leaves_it_uniform_about_an_axis():
-    gas = made(about_an_axis())
+    gas = gas_of(about_an_axis())
     for _ in range(12):
         gas.step(gas.stable_dt())
     inner = gas.motion.domain.inner
@@ -147,33 +147,36 @@ def in_a_stream(**body):
 
 
 def test_a_cloud_that_ends_at_a_sector_says_what_the_whole_says_upstream():
-    _, whole = flown(made(in_a_stream()), 1.2)
-    gas = made(in_a_stream(sector=0.5 * np.pi))
-    _, cut = flown(gas, 1.2)
+    _, whole_pressure = mean_drag_and_pressure(gas_of(in_a_stream()), 1.2)
+    gas = gas_of(in_a_stream(sector=0.5 * np.pi))
+    _, cut_pressure = mean_drag_and_pressure(gas, 1.2)
     angle = gas.give(frozenset(["surface.angle"]))["surface.angle"]
-    other = (np.arange(24) + 0.5) * np.pi / 24
-    near = angle < 1.3
-    assert np.abs(cut - np.interp(angle, other, whole))[near].max() < 0.015 * whole.max()
+    whole_angle = (np.arange(24) + 0.5) * np.pi / 24
+    upstream = angle < 1.3
+    assert (
+        np.abs(cut_pressure - np.interp(angle, whole_angle, whole_pressure))[upstream].max()
+        < 0.015 * whole_pressure.max()
+    )
     imbalance = gas.give(frozenset(["balance.imbalance"]))["balance.imbalance"][0]
     assert abs(imbalance) < 0.01
-    kept = gas.save()
+    saved_state = gas.save()
     gas.step(1e-3)
     after = gas.save()
-    gas.load(kept)
+    gas.load(saved_state)
     gas.step(1e-3)
     assert np.array_equal(gas.state.primitive, after["primitive"])
     still = np.full_like(gas.fluxes.primitive, PRESSURE)  # gas at rest pushes nowhere
     gas.motion.add_flows(gas.motion.domain, still, np.zeros(5))
-    back = gas.motion.outputs.base_force[0]
-    assert back[0] == pytest.approx(-np.pi * RADIUS**2 * PRESSURE, rel=2e-3)
-    assert np.abs(gas.motion.loads[0, :3] + back).max() < 1e-12 * abs(back[0])
+    base_force = gas.motion.outputs.base_force[0]
+    assert base_force[0] == pytest.approx(-np.pi * RADIUS**2 * PRESSURE, rel=2e-3)
+    assert np.abs(gas.motion.loads[0, :3] + base_force).max() < 1e-12 * abs(base_force[0])
 
 
 def test_a_cloud_that_ends_where_its_box_does_not_is_refused():
     settings = in_a_stream(sector=0.5 * np.pi)
     settings["box"]["highest"][0] = 0.5
     with pytest.raises(SceneError, match="must end there too"):
-        made(settings)
+        gas_of(settings)
 
 
 def test_heat_is_told_over_that_of_fay_and_riddell_at_a_sphere():
@@ -197,7 +200,7 @@ def test_layers_grow_to_the_largest_and_no_further():
 
 
 def test_bodies_off_the_axis_are_refused():
-    gas = made(about_an_axis(is_driven=True))
+    gas = gas_of(about_an_axis(is_driven=True))
     motion = {
         "motion.position": gas.motion.pose.centre + np.array([0.0, 0.0, 0.01]),
         "motion.velocity": gas.motion.pose.velocity,
@@ -229,9 +232,9 @@ def test_fresh_nodes_get_linear_fields_exactly():
 def test_nodes_behind_a_body_are_no_neighbours():
     positions = np.array([[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0], [-1.0, 0.0, 2.5]])
     body = np.zeros((1, 3)), np.array([0.5])
-    near, found = np.zeros((3, 1), np.int32), np.array([[1, 2]])
-    lacks = choose(np.array([0]), found, positions, np.full(3, 0.1), *body, 1, 4, near)
-    assert lacks == -1
+    near, candidates = np.zeros((3, 1), np.int32), np.array([[1, 2]])
+    lacking_node = choose(np.array([0]), candidates, positions, np.full(3, 0.1), *body, 1, 4, near)
+    assert lacking_node == -1
     assert near[0, 0] == 2
 
 
@@ -253,7 +256,7 @@ def test_nodes_beside_a_coarser_cloud_have_neighbours_on_its_side():
 def test_hysteresis_keeps_nodes_from_coming_and_going():
     counts = []
     for hysteresis in (0.0, 0.3):
-        gas = made(scene(share=1.0, hysteresis=hysteresis))
+        gas = gas_of(scene(share=1.0, hysteresis=hysteresis))
         for _ in range(60):
             gas.step(gas.stable_dt())
         counts.append(gas.motion.holes.fresh_count)
@@ -261,43 +264,43 @@ def test_hysteresis_keeps_nodes_from_coming_and_going():
 
 
 def test_what_bodies_get_the_gas_loses():
-    gas = made(scene(share=1.0, gas=[0.0, 0.0, 0.0]))
+    gas = gas_of(scene(share=1.0, gas=[0.0, 0.0, 0.0]))
     gas.step(gas.stable_dt())
     before, dt = gas.state.entered.copy(), gas.stable_dt()
     gas.step(dt)
     force = gas.give(frozenset(["bodies.force"]))["bodies.force"][0]
-    got = (gas.state.entered - before)[1:4] / dt
-    assert np.abs(got + force).max() < 1e-12 * np.abs(force).max()
+    momentum_rate = (gas.state.entered - before)[1:4] / dt
+    assert np.abs(momentum_rate + force).max() < 1e-12 * np.abs(force).max()
 
 
 def test_a_saved_state_goes_on_with_the_same_bits():
-    gas = made(scene(share=1.0))
+    gas = gas_of(scene(share=1.0))
     for _ in range(7):
         gas.step(gas.stable_dt())
-    kept, runs = gas.save(), []
+    saved_state, runs = gas.save(), []
     for _ in range(2):
-        gas.load(kept)
+        gas.load(saved_state)
         for _ in range(9):
             gas.step(gas.stable_dt())
         runs.append(gas.save())
-    other = made(scene(share=1.0))
-    other.load(kept)
+    resumed = gas_of(scene(share=1.0))
+    resumed.load(saved_state)
     for _ in range(9):
-        other.step(other.stable_dt())
-    runs.append(other.save())
+        resumed.step(resumed.stable_dt())
+    runs.append(resumed.save())
     for name, array in runs[0].items():
         assert np.array_equal(array, runs[1][name], equal_nan=True), name
         assert np.array_equal(array, runs[2][name], equal_nan=True), name
 
 
 def test_a_body_that_leaves_the_box_is_refused():
-    gas = made(scene(share=1.0, way=1.0))
+    gas = gas_of(scene(share=1.0, way=1.0))
     with pytest.raises(StepError, match="must stay within the box"):
         for _ in range(400):
             gas.step(gas.stable_dt())
 
 
-def two(gap):
+def two_bodies(gap):
     return [
         {
             "centre": [x, 0.0, 0.0],
@@ -313,31 +316,33 @@ def two(gap):
 
 
 def test_bodies_that_touch_at_the_start_are_a_mistake_of_the_scene():
-    said = r"moving.bodies.1: bodies 0 and 1 must leave room for two layers .* found 0 m between"
-    with pytest.raises(SceneError, match=said):
-        made(scene(bodies=two(0.0), gas=[0.0, 0.0, 0.0]))
+    pattern = r"moving.bodies.1: bodies 0 and 1 must leave room for two layers .* found 0 m between"
+    with pytest.raises(SceneError, match=pattern):
+        gas_of(scene(bodies=two_bodies(0.0), gas=[0.0, 0.0, 0.0]))
 
 
 def test_a_body_whose_cloud_does_not_fit_into_the_box_is_a_mistake_of_the_scene():
-    high = scene()
-    high["moving"]["bodies"][0]["centre"][2] = 1.0
+    settings = scene()
+    settings["moving"]["bodies"][0]["centre"][2] = 1.0
     with pytest.raises(SceneError, match=r"moving.bodies.0: .* across z. Make the box longer"):
-        made(high)
+        gas_of(settings)
 
 
 def test_partners_whose_bodies_are_smaller_or_fewer_are_refused():
-    gas = made(scene(bodies=[two(0.5)[0] | {"is_driven": True}], gas=[0.0, 0.0, 0.0]))
+    gas = gas_of(scene(bodies=[two_bodies(0.5)[0] | {"is_driven": True}], gas=[0.0, 0.0, 0.0]))
     for size in (0.5, 0.75):  # larger ones keep others at a distance
         gas.bind({"motion.radius": np.full(1, 0.5 * size)}, frozenset())
-    said = r"moving.bodies.0: .* at least as large as that in the gas, 0.5 m across, .* 0.4 m. Give"
-    with pytest.raises(SceneError, match=said):
+    pattern = (
+        r"moving.bodies.0: .* at least as large as that in the gas, 0.5 m across, .* 0.4 m. Give"
+    )
+    with pytest.raises(SceneError, match=pattern):
         gas.bind({"motion.radius": np.full(1, 0.2)}, frozenset())
     with pytest.raises(SceneError, match=r"found 1 driven bodies and 2 of the partner"):
         gas.bind({"motion.radius": np.full(2, 0.25)}, frozenset())
 
 
 def test_partners_whose_bodies_begin_elsewhere_are_refused():
-    gas = made(scene(bodies=[two(0.5)[0] | {"is_driven": True}], gas=[0.0, 0.0, 0.0]))
+    gas = gas_of(scene(bodies=[two_bodies(0.5)[0] | {"is_driven": True}], gas=[0.0, 0.0, 0.0]))
     centre = gas.motion.pose.centre.copy()
     gas.prime({"motion.position": centre})
     with pytest.raises(SceneError, match=r"moving.bodies.0: .* must begin where the gas has it"):
@@ -346,22 +351,22 @@ def test_partners_whose_bodies_begin_elsewhere_are_refused():
 
 @pytest.mark.parametrize(("position", "velocity"), [(0.01, 0.0), (0.0, 0.3)])
 def test_driven_bodies_that_leave_the_plane_are_refused(position, velocity):
-    bodies = [two(0.5)[0] | {"is_driven": True}]
-    gas = made(scene(bodies=bodies, gas=[0.0, 0.0, 0.0]))
-    away = {
+    bodies = [two_bodies(0.5)[0] | {"is_driven": True}]
+    gas = gas_of(scene(bodies=bodies, gas=[0.0, 0.0, 0.0]))
+    motion = {
         "motion.position": gas.motion.pose.centre + np.array([0.0, position, 0.0]),
         "motion.velocity": gas.motion.pose.velocity + np.array([0.0, velocity, 0.0]),
     }
     with pytest.raises(SceneError, match=r"the plane y = 0; the partner of body 0 is at"):
-        gas.take(away)
-    away["motion.velocity"] = np.array([[1.0, 1e-17, 0.0]])
-    away["motion.position"] = np.array([[0.001, -1e-17, 0.0]])
-    gas.take(away)
+        gas.take(motion)
+    motion["motion.velocity"] = np.array([[1.0, 1e-17, 0.0]])
+    motion["motion.position"] = np.array([[0.001, -1e-17, 0.0]])
+    gas.take(motion)
     assert gas.motion.pose.velocity[0].tolist() == [1.0, 0.0, 0.0]
 
 
 def test_bodies_that_come_near_each_other_run_until_they_nearly_touch():
-    gas = made(scene(bodies=two(0.5), gas=[0.0, 0.0, 0.0]))
+    gas = gas_of(scene(bodies=two_bodies(0.5), gas=[0.0, 0.0, 0.0]))
     with pytest.raises(StepError, match="must leave room for two layers"):
         for _ in range(400):
             gas.step(gas.stable_dt())
@@ -373,7 +378,7 @@ def test_bodies_that_come_near_each_other_run_until_they_nearly_touch():
 
 def test_clouds_with_too_few_neighbours_are_refused():
     with pytest.raises(SceneError, match="8 neighbours"):
-        made(scene() | {"neighbours": 6})
+        gas_of(scene() | {"neighbours": 6})
 
 
 def test_scenes_without_bodies_import_no_seams():

@@ -36,18 +36,21 @@ MASS, SIZE = 1e-4, 1e-3  # kg, m: of a grain that is light, so that it is dragge
 
 
 def gas_of(cloud, places, parcel=5.0, reaction=True, **moving):
-    """A gas and what it is told of particles."""
+    """A gas with the particles of a partner."""
     table = CLOUDS[cloud] | {"gas": {"gas_constant": 1.0, "viscosity": 0.1}, "initial": WIND}
     table |= {"particles": {"drag": "stokes", "reaction": reaction}}
     params, mistakes = read(MeshlessGasParams, table, "gas")
     assert not mistakes, mistakes
-    made, count = MeshlessGas(params), len(places)
-    held = {"mass": MASS, "heat_capacity": 1e-4, "number": 1.0}
-    made.bind(
-        {f"particles.{name}": np.full(count, parcel * one) for name, one in held.items()},
+    gas, count = MeshlessGas(params), len(places)
+    properties = {"mass": MASS, "heat_capacity": 1e-4, "number": 1.0}
+    gas.bind(
+        {
+            f"particles.{name}": np.full(count, parcel * amount)
+            for name, amount in properties.items()
+        },
         frozenset(),
     )
-    told = {
+    particles = {
         "position": np.array(places),
         "velocity": np.zeros((count, 3)),
         "acceleration": np.zeros((count, 3)),
@@ -55,16 +58,16 @@ def gas_of(cloud, places, parcel=5.0, reaction=True, **moving):
         "diameter": np.full(count, SIZE),
         "launched": np.ones(count),
     } | moving
-    fields = {f"particles.{name}": one for name, one in told.items()}
-    made.prime(fields)
-    made.take(fields)
-    return made
+    fields = {f"particles.{name}": values for name, values in particles.items()}
+    gas.prime(fields)
+    gas.take(fields)
+    return gas
 
 
-def loads(made):
+def loads(gas):
     """Forces [N] and heat [W] on particles."""
-    given = made.give(frozenset({"particle_load.force", "particle_heat.heat_flow"}))
-    return given["particle_load.force"], given["particle_heat.heat_flow"]
+    outputs = gas.give(frozenset({"particle_load.force", "particle_heat.heat_flow"}))
+    return outputs["particle_load.force"], outputs["particle_heat.heat_flow"]
 
 
 def test_turned_vectors_come_back():
@@ -72,27 +75,27 @@ def test_turned_vectors_come_back():
     places, vectors = rng.normal(size=(2, 6, 3))
     places[0, 1:] = 0.0  # on the axis
     azimuths = azimuths_of(places, np.zeros(3))
-    seen = to_half_plane(azimuths, places)
-    assert seen[:, 1] == pytest.approx(0.0, abs=1e-15)
-    assert seen[:, 2] == pytest.approx(np.hypot(places[:, 1], places[:, 2]))
+    turned = to_half_plane(azimuths, places)
+    assert turned[:, 1] == pytest.approx(0.0, abs=1e-15)
+    assert turned[:, 2] == pytest.approx(np.hypot(places[:, 1], places[:, 2]))
     assert from_half_plane(azimuths, to_half_plane(azimuths, vectors)) == pytest.approx(vectors)
 
 
 @pytest.mark.full  # kernels in space
 @pytest.mark.parametrize("cloud", CLOUDS)
 def test_what_particles_get_nodes_in_layers_lose(cloud):
-    made = gas_of(cloud, [PLACES[cloud]])
-    volumes = made.motion.domain.cloud.volumes[: made.items()]
-    free = gas_of(cloud, [PLACES[cloud]], reaction=False)
-    dt = 0.2 * min(made.stable_dt(), free.stable_dt())
-    before = made.state.conservative.copy()
-    for gas in (made, free):
+    two_way = gas_of(cloud, [PLACES[cloud]])
+    volumes = two_way.motion.domain.cloud.volumes[: two_way.items()]
+    one_way = gas_of(cloud, [PLACES[cloud]], reaction=False)
+    dt = 0.2 * min(two_way.stable_dt(), one_way.stable_dt())
+    before = two_way.state.conservative.copy()
+    for gas in (two_way, one_way):
         gas.parts[-1].begin(dt, gas.fluxes.primitive, gas.state.conservative)
         gas.scheme.write_rates(dt, (0.0, 1.0, 1.0))
-    rates = [gas.fluxes.residual[: gas.items()] for gas in (made, free)]
+    rates = [gas.fluxes.residual[: gas.items()] for gas in (two_way, one_way)]
     lost = (volumes[:, None] * (rates[0] - rates[1])).sum(axis=0)
-    force, heat = loads(made)
-    assert np.array_equal(before, made.state.conservative)
+    force, heat = loads(two_way)
+    assert np.array_equal(before, two_way.state.conservative)
     assert force[0, 0] > 0.0 and heat[0] > 0.0
     assert lost[1] == pytest.approx(-force[0, 0], rel=1e-12)
     assert lost[4] == pytest.approx(-heat[0], rel=1e-12)  # the particle rests
@@ -104,28 +107,28 @@ def test_what_particles_get_nodes_in_layers_lose(cloud):
 def test_a_ring_of_grains_is_the_same_at_every_angle():
     turn, x, radius = 1.1, *np.array(PLACES["axis"])[[0, 2]]
     aside = [x, radius * np.sin(turn), radius * np.cos(turn)]
-    made = gas_of("axis", [PLACES["axis"], aside])
-    dt = 0.5 * made.stable_dt()
-    made.step(dt)
-    force, heat = loads(made)
+    gas = gas_of("axis", [PLACES["axis"], aside])
+    dt = 0.5 * gas.stable_dt()
+    gas.step(dt)
+    force, heat = loads(gas)
     assert np.hypot(*force[1, 1:]) == pytest.approx(force[0, 2], rel=1e-9)
     assert force[1, 1] == pytest.approx(force[0, 2] * np.sin(turn), rel=1e-9)
     assert force[1, 0] == pytest.approx(force[0, 0], rel=1e-12)
     assert heat[1] == pytest.approx(heat[0], rel=1e-12)
     # Two halves of the grains are those of one particle with all of them.
-    whole = gas_of("axis", [PLACES["axis"]], parcel=10.0)
-    whole.step(dt)
-    assert loads(whole)[0][0] == pytest.approx(2.0 * force[0], rel=1e-9)
-    assert whole.state.conservative == pytest.approx(made.state.conservative, rel=1e-9, abs=1e-12)
-    kept = made.save()
-    after = loads(made)[0]
-    made.step(dt)
-    made.load(kept)
-    assert np.array_equal(loads(made)[0], after)
+    single = gas_of("axis", [PLACES["axis"]], parcel=10.0)
+    single.step(dt)
+    assert loads(single)[0][0] == pytest.approx(2.0 * force[0], rel=1e-9)
+    assert single.state.conservative == pytest.approx(gas.state.conservative, rel=1e-9, abs=1e-12)
+    saved_state = gas.save()
+    after = loads(gas)[0]
+    gas.step(dt)
+    gas.load(saved_state)
+    assert np.array_equal(loads(gas)[0], after)
 
 
 def test_particles_larger_than_the_spacing_are_refused():
     size = {"diameter": np.array([1e-3, 3.0])}
-    said = r"smaller than the spacing of nodes, .* found particle 1 of 3 m. Make nodes coarser"
-    with pytest.raises(SceneError, match=said):
+    pattern = r"smaller than the spacing of nodes, .* found particle 1 of 3 m. Make nodes coarser"
+    with pytest.raises(SceneError, match=pattern):
         gas_of("axis", [PLACES["axis"]] * 2, **size)

@@ -1,4 +1,4 @@
-"""Point particles and nodes: what one gets the other loses, exact relaxation and terminal speed."""
+"""Point particles and nodes: conservation, exact relaxation and terminal speed."""
 
 import math
 
@@ -31,9 +31,9 @@ PATCHES = dict.fromkeys(PERIODIC, 0)
 
 
 class Gas:
-    """Nodes without fluxes: what the particles do is all that changes them."""
+    """Nodes without fluxes, changed by particles alone."""
 
-    def __init__(self, faces=PERIODIC, planar=True, spacing=0.1, jitter=0.3, **given):
+    def __init__(self, faces=PERIODIC, planar=True, spacing=0.1, jitter=0.3, **overrides):
         high = (1.0, 1.0, 1.0)
         self.cloud = box(
             (0.0, 0.0, 0.0), high, spacing, faces, PATCHES, jitter=jitter, seed=3, planar=planar
@@ -42,7 +42,7 @@ class Gas:
         self.primitive = np.zeros((count, 5))
         self.primitive[:, 0], self.primitive[:, 4] = DENSITY, PRESSURE
         self.conservative = np.zeros((count, 5))
-        keys = {"drag": "stokes", "heat": "still"} | given
+        keys = {"drag": "stokes", "heat": "still"} | overrides
         self.exchange = InterphaseExchange(
             PointParticles(**keys), self.cloud, planar, TRANSPORT, GAMMA, PRANDTL
         )
@@ -96,18 +96,18 @@ def test_weights_are_shares_of_one_and_change_continuously():
     places = np.linspace([0.31, 0.2, 0.43], [0.52, 0.2, 0.61], 2001)
     gas.exchange.place(dust(places))
     field = gas.cloud.positions[:, 0] - 2.0 * gas.cloud.positions[:, 2]
-    found = (gas.exchange.weights * field[gas.exchange.near]).sum(axis=1)
+    interpolated = (gas.exchange.weights * field[gas.exchange.near]).sum(axis=1)
     assert gas.exchange.weights.sum(axis=1) == pytest.approx(1.0, abs=1e-14)
     assert gas.exchange.weights.min() >= 0.0
-    assert np.abs(np.diff(found)).max() < 5.0 * 0.6 / 2000
+    assert np.abs(np.diff(interpolated)).max() < 5.0 * 0.6 / 2000
     exact = places[:, 0] - 2.0 * places[:, 2]
-    assert np.abs(found - exact).max() < 0.5 * 0.1 * math.sqrt(5.0)
+    assert np.abs(interpolated - exact).max() < 0.5 * 0.1 * math.sqrt(5.0)
 
 
 def test_particles_before_their_launch_are_not_there():
     gas = Gas(drag="loth")
-    one = dust([[0.3, 0.0, 0.5], [0.7, 0.0, 0.5]], velocity=(30.0, 0.0, 0.0))
-    gas.step(one._replace(launched=np.array([1.0, 0.0])), 1e-6)
+    particles = dust([[0.3, 0.0, 0.5], [0.7, 0.0, 0.5]], velocity=(30.0, 0.0, 0.0))
+    gas.step(particles._replace(launched=np.array([1.0, 0.0])), 1e-6)
     assert gas.exchange.loads.force[0, 0] < 0.0
     assert not gas.exchange.loads.force[1].any()
     assert not gas.exchange.loads.rates[1].any()
@@ -129,12 +129,12 @@ def test_what_particles_get_the_nodes_lose_to_rounding(planar, drag):
     gas.primitive[:, 1:4] = random.normal(0.0, 30.0, (len(gas.primitive), 3))
     if planar:
         gas.primitive[:, 2] = 0.0
-    one = dust(scattered(200), number=1e7)
+    particles = dust(scattered(200), number=1e7)
     speeds = random.normal(0.0, 300.0, (200, 3))
-    one = one._replace(velocity=speeds, temperature=random.uniform(250.0, 800.0, 200))
+    particles = particles._replace(velocity=speeds, temperature=random.uniform(250.0, 800.0, 200))
     write_conservative(gas.primitive, GAMMA, gas.conservative)
     before, dt = gas.content(), 2e-6
-    gas.step(one, dt)
+    gas.step(particles, dt)
     lost = (gas.content() - before) / dt
     force, heat = gas.exchange.loads.force, gas.exchange.loads.heat
     power = float(gas.exchange.loads.power.sum())
@@ -144,7 +144,7 @@ def test_what_particles_get_the_nodes_lose_to_rounding(planar, drag):
     assert lost[4] + power == pytest.approx(0.0, abs=1e-9 * abs(power))
     # The sources themselves, without the state that they are added to.
     residual = np.zeros_like(gas.primitive)
-    gas.exchange.place(one)
+    gas.exchange.place(particles)
     gas.exchange.add(gas.primitive, residual, 0.0, (0.0, 1.0, 1.0))
     summed = (residual[: gas.cloud.nodes] * gas.volumes).sum(axis=0)
     force, heat = gas.exchange.loads.force, gas.exchange.loads.heat
@@ -167,7 +167,7 @@ def test_a_plane_of_symmetry_takes_what_pushes_into_it_alone():
 
 
 def relax(gas, particles, end, dt):
-    """Particles by the mean loads of each step, told as they are at its start."""
+    """Move particles by the mean loads of each step; the gas sees them at its start."""
     for _ in range(round(end / dt)):
         gas.step(particles, dt)
         particles = particles._replace(
@@ -232,12 +232,12 @@ def test_dust_and_gas_relax_together_as_the_exact_solution_has_it():
     def rates(_, state):
         u, v, warm, cool = state
         drag = (u - v) / RELAXES
-        given = heat * (cool - warm)
+        heat_flow = heat * (cool - warm)
         return [
             -loading * drag,
             drag,
-            given / WARMTH,
-            loading * (drag * (u - v) - given) / CAPACITY,
+            heat_flow / WARMTH,
+            loading * (drag * (u - v) - heat_flow) / CAPACITY,
         ]
 
     exact = solve_ivp(rates, (0.0, end), [100.0, 0.0, 500.0, 300.0], rtol=1e-10).y[:, -1]
@@ -267,7 +267,7 @@ def test_the_step_follows_the_faster_of_particle_and_gas():
         node = drag * weights.max() / (DENSITY * 0.01)
         heat = 2.0 * math.pi * TRANSPORT.conduction * VISCOSITY * SIZE * number
         node = max(node, heat * weights.max() / (DENSITY * 0.01 * CAPACITY))
-        found = gas.exchange.stable_dt(gas.primitive)
+        dt = gas.exchange.stable_dt(gas.primitive)
         particle = max(1.0 / RELAXES, heat / (number * MASS * WARMTH))
-        assert found == pytest.approx(0.5 / (particle + node), rel=1e-9)
+        assert dt == pytest.approx(0.5 / (particle + node), rel=1e-9)
     assert math.isinf(Gas().exchange.stable_dt(gas.primitive))

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from gases import given
+from gases import output
 
 from quintet.components.meshless_gas.boundaries import Boundary
 from quintet.components.meshless_gas.component import MeshlessGas
@@ -82,16 +82,16 @@ def errors(kind: str, nodes: int) -> dict[str, float]:
     """Relative errors at the lower wall."""
     gas = between_walls(nodes, UPPER[kind])
     adiabatic = kind == "adiabatic"
-    found = exact(adiabatic, float(given(gas, "wall.pressure").mean()))
-    lower = given(gas, "wall.position")[:, 2] < 0.5
-    friction, heat = given(gas, "wall.friction")[lower, 0], given(gas, "wall.heat_flux")[lower]
+    expected = exact(adiabatic, float(output(gas, "wall.pressure").mean()))
+    lower = output(gas, "wall.position")[:, 2] < 0.5
+    friction, heat = output(gas, "wall.friction")[lower, 0], output(gas, "wall.heat_flux")[lower]
     density, speed, *_, pressure = gas.state.primitive[np.flatnonzero(at_bottom(gas))].T
     share = SPEED if adiabatic else 0.5 * SPEED
     return {
-        "slip": speed.mean() / found["slip"] - 1.0,
-        "jump": ((pressure / (density * R)).mean() - 1.0) / (found["temperature"] - 1.0) - 1.0,
-        "friction": friction.mean() / found["friction"] - 1.0,
-        "heat": heat.mean() / (share * found["friction"]) - 1.0,  # of sliding included
+        "slip": speed.mean() / expected["slip"] - 1.0,
+        "jump": ((pressure / (density * R)).mean() - 1.0) / (expected["temperature"] - 1.0) - 1.0,
+        "friction": friction.mean() / expected["friction"] - 1.0,
+        "heat": heat.mean() / (share * expected["friction"]) - 1.0,  # of sliding included
     }
 
 
@@ -102,8 +102,8 @@ def at_bottom(gas: MeshlessGas) -> np.ndarray:
 
 @pytest.mark.parametrize("kind", UPPER)
 def test_gas_slips_and_its_temperature_jumps_as_maxwell_and_smoluchowski_say(kind: str) -> None:
-    found = errors(kind, 8)
-    assert all(abs(one) < 0.01 for one in found.values()), found
+    deviations = errors(kind, 8)
+    assert all(abs(deviation) < 0.01 for deviation in deviations.values()), deviations
 
 
 @pytest.mark.full
@@ -111,17 +111,17 @@ def test_gas_slips_and_its_temperature_jumps_as_maxwell_and_smoluchowski_say(kin
 def test_slip_and_jump_converge_with_an_order_of_1_5_at_least(kind: str) -> None:
     coarse, fine = errors(kind, 8), errors(kind, 32)
     orders = {name: math.log(coarse[name] / fine[name], 4.0) for name in coarse}
-    assert all(one > 1.5 for one in orders.values()), orders
-    assert all(abs(one) < 1e-3 for one in fine.values()), fine
+    assert all(order > 1.5 for order in orders.values()), orders
+    assert all(abs(deviation) < 1e-3 for deviation in fine.values()), fine
 
 
 def test_gas_that_slips_goes_on_from_a_saved_state_with_the_same_bits() -> None:
     gas = between_walls(8, WALL, end=0.3)
-    kept, step = gas.save(), gas.stable_dt()
+    saved_state, step = gas.save(), gas.stable_dt()
     for _ in range(3):
         gas.step(step)
     first = gas.state.conservative.copy()
-    gas.load(kept)
+    gas.load(saved_state)
     for _ in range(3):
         gas.step(step)
     np.testing.assert_array_equal(gas.state.conservative, first)
@@ -183,8 +183,8 @@ def test_gas_creeps_along_a_wall_to_where_it_is_warmer() -> None:
     np.testing.assert_allclose(friction, 0.0, atol=1e-13)
     # Gas at rest above holds it back: the parabola's slope at the wall is -3/2 u/h.
     length = SLIP * VISCOSITY / R * math.sqrt(0.5 * math.pi * R)
-    held, _ = slipped([0.0, 0.0], [0.05, 0.1], 0.03, 0.0)
-    assert held[0] == pytest.approx(creep / (1.0 + length * 1.5 / 0.05))
+    slower, _ = slipped([0.0, 0.0], [0.05, 0.1], 0.03, 0.0)
+    assert slower[0] == pytest.approx(creep / (1.0 + length * 1.5 / 0.05))
 
 
 def test_gas_slips_round_a_sphere_as_basset_says() -> None:

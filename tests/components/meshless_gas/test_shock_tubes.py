@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from gases import GAMMA, SOD, gas, given, run, state, tube
+from gases import GAMMA, SOD, gas_in_box, output, run, state, tube
 
 from quintet.components.meshless_gas import component, diagnostics, scheme
 from quintet.components.meshless_gas.exact.riemann import Side, star
@@ -26,8 +26,8 @@ TUBES = {
 @pytest.mark.parametrize("name", TUBES)
 def test_exact_solution_has_its_published_pressure_and_velocity(name):
     left, right, pressure, velocity = TUBES[name]
-    found = star(Side(*left), Side(*right), GAMMA)
-    assert found == pytest.approx(
+    star_state = star(Side(*left), Side(*right), GAMMA)
+    assert star_state == pytest.approx(
         (pressure, velocity), rel=1e-4 if name != "123" else 5e-3, abs=1e-4
     )
 
@@ -45,96 +45,99 @@ def test_exact_solution_has_its_published_pressure_and_velocity(name):
     ],
 )
 def test_tubes_are_computed_without_floors(left, right, end, within):
-    made = run(tube(50, left, right), end)
-    assert given(made, "error.density")[0] < within
-    assert (made.state.primitive[:, [0, 4]] > 0.0).all()
-    assert abs(given(made, "balance.mass_drift")[0]) < 0.02
-    assert abs(given(made, "balance.energy_drift")[0]) < 0.02
+    gas = run(tube(50, left, right), end)
+    assert output(gas, "error.density")[0] < within
+    assert (gas.state.primitive[:, [0, 4]] > 0.0).all()
+    assert abs(output(gas, "balance.mass_drift")[0]) < 0.02
+    assert abs(output(gas, "balance.energy_drift")[0]) < 0.02
 
 
 def test_what_strikes_a_wall_is_stopped_by_the_shock_of_the_exact_solution():
     # The mirror image of the wall's gas comes from beyond it.
     mach, wall = 20.0, {"kind": "slip"}
     wind = state(1.0, mach, 1.0 / GAMMA)
-    made = gas(
+    gas = gas_in_box(
         initial=wind, boundaries={"x-": {"kind": "inflow", "state": wind}, "x+": wall},
         box={"spacing": 0.02, "highest": [1.0, 0.0, 0.1]}, probes=[[0.99, 0.0, 0.05]], neighbours=8,
     )  # fmt: skip
-    run(made, 0.06)
+    run(gas, 0.06)
     side = Side(1.0, mach, 1.0 / GAMMA)
     pressure, _ = star(side, side._replace(velocity=-mach), GAMMA)
-    assert given(made, "probes.pressure")[0] == pytest.approx(pressure, rel=0.03)
+    assert output(gas, "probes.pressure")[0] == pytest.approx(pressure, rel=0.03)
 
 
 def test_a_step_beyond_the_limit_ends_with_where_and_what_to_do():
-    made = tube(50, *SOD)
+    gas = tube(50, *SOD)
     with pytest.raises(StepError, match=r"the node at .* m has .* Lower courant"):
         for _ in range(20):
-            made.step(4.0 * made.scheme.shortest_step)
+            gas.step(4.0 * gas.scheme.shortest_step)
 
 
 def test_two_threads_give_the_bits_of_one(monkeypatch):
-    for shared_out in (component, scheme, diagnostics):
-        monkeypatch.setattr(shared_out, "LIGHT", 20)  # also what is too little to be worth it
+    for module in (component, scheme, diagnostics):
+        monkeypatch.setattr(module, "LIGHT", 20)  # also what is too little to be worth it
     monkeypatch.setattr(scheme, "SUMS", 20)
     monkeypatch.setattr(diagnostics, "WHOLESALE", 20)
     monkeypatch.setattr("quintet.components.meshless_gas.state.WHOLESALE", 20)
-    one, two = (
+    serial, threaded = (
         run(tube(200, *SOD, resources=Resources(threads=threads)), 0.02) for threads in (1, 2)
     )
-    assert np.array_equal(one.state.conservative, two.state.conservative)
-    assert given(one, "error.density") == given(two, "error.density")
-    assert np.array_equal(one.state.begun, two.state.begun)
-    assert given(one, "balance.energy") == given(two, "balance.energy")
+    assert np.array_equal(serial.state.conservative, threaded.state.conservative)
+    assert output(serial, "error.density") == output(threaded, "error.density")
+    assert np.array_equal(serial.state.begun, threaded.state.begun)
+    assert output(serial, "balance.energy") == output(threaded, "balance.energy")
 
 
 def test_nothing_is_gained_nor_lost_before_the_first_step():
-    made = tube(31, *SOD)
-    drifts = [given(made, f"balance.{one}_drift") for one in ("mass", "momentum", "energy")]
-    assert all((one == 0.0).all() for one in drifts)  # summed in one order, now and at the start
+    gas = tube(31, *SOD)
+    drifts = [
+        output(gas, f"balance.{quantity}_drift") for quantity in ("mass", "momentum", "energy")
+    ]
+    # Summed in one order, now and at the start.
+    assert all((drift == 0.0).all() for drift in drifts)
 
 
 def test_a_tube_shows_the_exact_solution_beside_its_own():
-    made = run(tube(50, *SOD), 0.1)
-    shown = made.view()
-    place = shown["points"][:, 0]
+    gas = run(tube(50, *SOD), 0.1)
+    view = gas.view()
+    place = view["points"][:, 0]
     behind = (place > 0.6) & (place < 0.66)  # between contact and shock: Toro, table 4.3
-    assert shown["exact_density"][behind] == pytest.approx(0.26557, rel=1e-4)
-    assert shown["exact_pressure"][behind] == pytest.approx(0.30313, rel=1e-4)
-    assert shown["exact_velocity"][behind, 0] == pytest.approx(0.92745, rel=1e-4)
-    assert np.abs(shown["density"] - shown["exact_density"]).mean() < 0.0145
+    assert view["exact_density"][behind] == pytest.approx(0.26557, rel=1e-4)
+    assert view["exact_pressure"][behind] == pytest.approx(0.30313, rel=1e-4)
+    assert view["exact_velocity"][behind, 0] == pytest.approx(0.92745, rel=1e-4)
+    assert np.abs(view["density"] - view["exact_density"]).mean() < 0.0145
 
 
 def test_planes_of_symmetry_of_a_box_are_shown_as_such_and_walls_as_walls():
     boundaries = {"z-": {"kind": "symmetry"}, "z+": {"kind": "slip"}}
-    made = gas(
+    gas = gas_in_box(
         box={"lowest": [0.0, 0.0, 0.0], "highest": [1.0, 0.0, 0.5], "spacing": 0.1},
         initial=state(1.0, 0.0, 1.0),
         boundaries=boundaries,
     )
-    shown = made.walls()
-    heights = [float(shown["points"][cell][:, 2].max()) for cell in shown["cells"]]
-    assert dict(zip(shown["support"].tolist(), heights, strict=True)) == {SYMMETRY: 0.0, WALL: 0.5}
+    walls = gas.walls()
+    heights = [float(walls["points"][cell][:, 2].max()) for cell in walls["cells"]]
+    assert dict(zip(walls["support"].tolist(), heights, strict=True)) == {SYMMETRY: 0.0, WALL: 0.5}
 
 
 def test_a_picture_after_load_is_that_before_save():
-    made, other = run(tube(50, *SOD), 0.1), tube(50, *SOD)
-    other.load(made.save())
-    before, after = made.view(), other.view()
+    gas, resumed = run(tube(50, *SOD), 0.1), tube(50, *SOD)
+    resumed.load(gas.save())
+    before, after = gas.view(), resumed.view()
     assert before["schlieren"].min() < 1e-3
     assert all(np.array_equal(before[key], after[key]) for key in before)
 
 
 def test_a_shock_is_dark_ahead_and_bright_behind_on_a_shadowgraph():
-    made = run(tube(50, *SOD), 0.1)
-    shown, place = made.view(), made.view()["points"][:, 0]
+    gas = run(tube(50, *SOD), 0.1)
+    view, place = gas.view(), gas.view()["points"][:, 0]
     near = np.abs(place - 0.6752) < 0.06
-    light = shown["shadowgraph"][near]
+    light = view["shadowgraph"][near]
     assert place[near][light.argmin()] > place[near][light.argmax()]
     assert light.min() < 0.1 and light.max() > 0.9
-    assert shown["shadowgraph"][place < 0.1] == pytest.approx(0.5, abs=1e-4)
+    assert view["shadowgraph"][place < 0.1] == pytest.approx(0.5, abs=1e-4)
     # Least squares of a linear field are exact.
-    domain = made.motion.domain
+    domain = gas.motion.domain
     inner = np.isin(domain.every, domain.inner)
     field = domain.cloud.positions * np.array([2.0, 0.0, 0.0])
     assert laplacian(domain, domain.every, field)[inner] == pytest.approx(2.0)
@@ -164,7 +167,7 @@ def von_neumann(mach, second_order):
     for phase in np.stack(np.meshgrid(*[np.linspace(0.0, np.pi, 17)] * 2), -1).reshape(-1, 2):
         shift = np.exp(1j * arm @ phase)
         gradient = (c * (shift - 1.0)[:, None]).sum(axis=0)
-        whole = np.zeros((3, 3), complex)
+        total = np.zeros((3, 3), complex)
         for k in range(8):
             across, slope = shift[k] - 1.0, gradient @ arm[k]
             half = (slope / 3.0 + across / 6.0) * second_order
@@ -176,8 +179,8 @@ def von_neumann(mach, second_order):
                 (modes * np.maximum(speeds, 0)) @ modes.T,
                 (modes * np.minimum(speeds, 0)) @ modes.T,
             )
-            whole -= 2.0 * size[k] * (forth * half + back * (across - half_j))
-        rates.extend(np.linalg.eigvals(whole) / courant)
+            total -= 2.0 * size[k] * (forth * half + back * (across - half_j))
+        rates.extend(np.linalg.eigvals(total) / courant)
     z = np.array(rates)
     low, high = 0.0, 10.0
     while high - low > 1e-3:

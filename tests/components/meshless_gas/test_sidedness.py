@@ -1,8 +1,8 @@
-"""Neighbours that lie on one side are seen, and more are taken; what cannot be cured is refused."""
+"""One-sided neighbourhoods are detected, and completed with more neighbours or refused."""
 
 import numpy as np
 import pytest
-from gases import GAMMA, SOD, gas, given, run, state, tube
+from gases import GAMMA, SOD, gas_in_box, output, run, state, tube
 
 from quintet.components.meshless_gas.params import MeshlessGasParams
 from quintet.components.meshless_gas.sidedness import EVEN, UNEVEN, sidedness
@@ -14,13 +14,13 @@ AIR = {"density": 1.0, "pressure": 1.0}
 MACH_3 = {"density": 1.0, "velocity": [2.8977775, 0.0, -0.7764571], "pressure": 1.0 / GAMMA}
 
 
-def worst(made):
-    own = made.motion.domain
-    return sidedness(own.cloud, own.stencils, own.inner, made.params.planar, Team(1)).max()
+def worst(gas):
+    domain = gas.motion.domain
+    return sidedness(domain.cloud, domain.stencils, domain.inner, gas.params.planar, Team(1)).max()
 
 
 def periodic(**keys):
-    return gas(initial=AIR, **keys)
+    return gas_in_box(initial=AIR, **keys)
 
 
 def stream_over_a_wedge(**keys):
@@ -28,76 +28,74 @@ def stream_over_a_wedge(**keys):
     wind = {"kind": "inflow", "state": MACH_3}
     box = {"highest": [1.0, 0.0, 0.5], "spacing": 0.05} | keys.pop("box")
     ends = {"x-": wind, "z+": wind, "x+": {"kind": "outflow"}, "z-": {"kind": "symmetry"}}
-    return gas(initial=MACH_3, boundaries=ends, box=box, probes=[[0.8, 0.0, 0.07]], **keys)
+    return gas_in_box(initial=MACH_3, boundaries=ends, box=box, probes=[[0.8, 0.0, 0.07]], **keys)
 
 
 @pytest.mark.parametrize(
     ("dimensions", "neighbours"), [(2, 4), (2, 8), (2, 12), (2, 20), (3, 6), (3, 18), (3, 26)]
 )
 def test_whole_shells_of_a_lattice_are_not_one_sided(dimensions, neighbours):
-    made = periodic(
+    gas = periodic(
         dimensions=dimensions, neighbours=neighbours, box={"jitter": 0.0, "spacing": 0.2}
     )
-    assert worst(made) == pytest.approx(0.0, abs=1e-9)
-    assert made.motion.domain.stencils.neighbours.shape[1] == neighbours and made.notes() == ()
+    assert worst(gas) == pytest.approx(0.0, abs=1e-9)
+    assert gas.motion.domain.stencils.neighbours.shape[1] == neighbours and gas.notes() == ()
 
 
 @pytest.mark.parametrize(
-    ("dimensions", "neighbours", "whole"), [(2, 3, 4), (2, 9, 12), (3, 9, 18), (3, 14, 18)]
+    ("dimensions", "neighbours", "complete"), [(2, 3, 4), (2, 9, 12), (3, 9, 18), (3, 14, 18)]
 )
-def test_a_shell_of_a_lattice_that_is_cut_is_completed_and_told(dimensions, neighbours, whole):
-    made = periodic(
+def test_a_shell_of_a_lattice_that_is_cut_is_completed_and_told(dimensions, neighbours, complete):
+    gas = periodic(
         dimensions=dimensions, neighbours=neighbours, box={"jitter": 0.0, "spacing": 0.2}
     )
-    assert made.motion.domain.stencils.neighbours.shape[1] == whole
-    assert worst(made) == pytest.approx(0.0, abs=1e-9)
-    (note,) = made.notes()
+    assert gas.motion.domain.stencils.neighbours.shape[1] == complete
+    assert worst(gas) == pytest.approx(0.0, abs=1e-9)
+    (note,) = gas.notes()
     assert f"the {neighbours} nearest" in note and "Leave neighbours out" in note
 
 
 @pytest.mark.parametrize("jitter", [0.0, 0.3, 0.6, 0.9])
 @pytest.mark.parametrize("dimensions", [2, 3])
 def test_neighbours_that_are_not_asked_for_surround_each_node(dimensions, jitter):
-    made = periodic(
-        dimensions=dimensions, box={"jitter": jitter, "spacing": 0.1 * (dimensions - 1)}
-    )
-    near = made.motion.domain.stencils.neighbours
-    assert worst(made) <= (EVEN if jitter < 0.6 else UNEVEN)
-    count = (near[: made.items()] != np.arange(made.items())[:, None]).sum(axis=1)
-    assert np.median(count) <= (12 if dimensions == 2 else 30) and made.notes() == ()
+    gas = periodic(dimensions=dimensions, box={"jitter": jitter, "spacing": 0.1 * (dimensions - 1)})
+    near = gas.motion.domain.stencils.neighbours
+    assert worst(gas) <= (EVEN if jitter < 0.6 else UNEVEN)
+    count = (near[: gas.items()] != np.arange(gas.items())[:, None]).sum(axis=1)
+    assert np.median(count) <= (12 if dimensions == 2 else 30) and gas.notes() == ()
 
 
 @pytest.mark.parametrize("neighbours", [3, 4, 8, 9])
 def test_one_sided_nodes_take_more_neighbours_and_are_counted(neighbours):
-    made = periodic(neighbours=neighbours, box={"jitter": 0.9, "spacing": 0.05})
-    assert worst(made) <= UNEVEN
-    (note,) = made.notes()
+    gas = periodic(neighbours=neighbours, box={"jitter": 0.9, "spacing": 0.05})
+    assert worst(gas) <= UNEVEN
+    (note,) = gas.notes()
     assert "of 400 nodes lie mostly on one side" in note and "lower jitter" in note
 
 
 def test_a_stream_through_nodes_moved_at_random_meets_the_exact_shock():
-    made = run(stream_over_a_wedge(neighbours=8, box={"jitter": 0.9}), 0.8)
-    assert given(made, "probes.pressure")[0] * GAMMA == pytest.approx(2.8216, rel=0.06)
+    gas = run(stream_over_a_wedge(neighbours=8, box={"jitter": 0.9}), 0.8)
+    assert output(gas, "probes.pressure")[0] * GAMMA == pytest.approx(2.8216, rel=0.06)
 
 
 def test_many_neighbours_do_not_change_what_surrounds_nodes_evenly():
-    made = periodic(neighbours=9, box={"jitter": 0.3})
-    assert made.motion.domain.stencils.neighbours.shape[1] == 9 and made.notes() == ()
+    gas = periodic(neighbours=9, box={"jitter": 0.3})
+    assert gas.motion.domain.stencils.neighbours.shape[1] == 9 and gas.notes() == ()
 
 
 def test_neighbours_are_told_of_a_resumed_gas_too():
-    made, other = (periodic(neighbours=9, box={"jitter": 0.0}) for _ in range(2))
-    other.load(made.save())
-    assert other.notes() == made.notes() != ()
+    gas, resumed = (periodic(neighbours=9, box={"jitter": 0.0}) for _ in range(2))
+    resumed.load(gas.save())
+    assert resumed.notes() == gas.notes() != ()
 
 
 def test_a_failed_step_below_the_limit_does_not_advise_a_lower_courant_number():
-    made = tube(50, *SOD)
-    made.fluxes.primitive[made.motion.domain.inner[0], 4] = 1e-300
+    gas = tube(50, *SOD)
+    gas.fluxes.primitive[gas.motion.domain.inner[0], 4] = 1e-300
     with pytest.raises(StepError) as error:
-        made.scheme.write_rates(0.0, (0.0, 1.0, 1.0))
-        made.state.conservative[:, 4] = 0.0
-        made.step(0.5 * made.scheme.shortest_step)
+        gas.scheme.write_rates(0.0, (0.0, 1.0, 1.0))
+        gas.state.conservative[:, 4] = 0.0
+        gas.step(0.5 * gas.scheme.shortest_step)
     assert "courant" not in str(error.value) and "order = 1" in str(error.value)
 
 

@@ -18,7 +18,7 @@ END = 3.0  # s
 def turning(rays=24, **body):
     """A cylinder that begins to turn in gas at rest, in a box that it does not feel."""
     spacing = math.tau * RADIUS / rays
-    round_it = {"points_around": rays, "thickness": 6.0 * spacing, "spacing": spacing}
+    layers = {"points_around": rays, "thickness": 6.0 * spacing, "spacing": spacing}
     table = {
         "gas": {"gas_constant": PRESSURE, "viscosity": VISCOSITY, "reference_temperature": 1.0},
         "viscous": True,
@@ -30,7 +30,7 @@ def turning(rays=24, **body):
         "moving": {
             "bodies": [
                 {"centre": [0.0, 0.0, 0.0], "radius": RADIUS, "first_spacing": 0.5 * spacing}
-                | {"temperature": 1.0, "angular_velocity": SPIN} | round_it | body,
+                | {"temperature": 1.0, "angular_velocity": SPIN} | layers | body,
             ]
         },
     }  # fmt: skip
@@ -43,11 +43,11 @@ def exact_torque(time):
 
     q² = s R²/ν; after Carslaw & Jaeger, Conduction of Heat in Solids (1959), section 13.5.
     """
-    shown = VISCOSITY * time / RADIUS**2
+    scaled_time = VISCOSITY * time / RADIUS**2
 
     def part(log):
         u = math.exp(log)
-        return math.exp(-u * u * shown) / (special.j1(u) ** 2 + special.y1(u) ** 2)
+        return math.exp(-u * u * scaled_time) / (special.j1(u) ** 2 + special.y1(u) ** 2)
 
     transient = 4.0 / math.pi**2 * integrate.quad(part, -30.0, 8.0, limit=400)[0]
     return -math.tau * VISCOSITY * SPIN * RADIUS**2 * (2.0 + transient)
@@ -56,17 +56,17 @@ def exact_torque(time):
 @pytest.mark.full  # kernels of friction with moving nodes
 def test_torque_on_a_cylinder_that_turns_is_that_of_the_exact_solution():
     gas, _ = turning()
-    turned = 0.0  # N m s, by which the cylinder was stopped
+    angular_impulse = 0.0  # N m s, by which the cylinder was stopped
     while gas.state.time < END - 1e-12:
         dt = min(gas.stable_dt(), END - gas.state.time)
         gas.step(dt)
         torque = gas.give(frozenset({"bodies.torque"}))["bodies.torque"][0]
-        turned -= dt * torque[1]
+        angular_impulse -= dt * torque[1]
         if gas.state.time > 0.5 * END:
             assert torque[1] == pytest.approx(exact_torque(gas.state.time), rel=0.02)
     assert torque[[0, 2]] == pytest.approx(0.0, abs=1e-12)
     exact, _ = integrate.quad(lambda root: -2.0 * root * exact_torque(root * root), 0.0, END**0.5)
-    assert turned == pytest.approx(exact, rel=0.02)
+    assert angular_impulse == pytest.approx(exact, rel=0.02)
 
 
 @pytest.mark.full
@@ -82,12 +82,12 @@ def test_a_partner_turns_a_cylinder_and_is_told_its_torque():
         driven.take(motion)
         for gas in (alone, driven):
             gas.step(dt)
-    told = driven.give(frozenset({"load.torque"}))["load.torque"]
-    assert np.array_equal(told, alone.give(frozenset({"bodies.torque"}))["bodies.torque"])
+    torque = driven.give(frozenset({"load.torque"}))["load.torque"]
+    assert np.array_equal(torque, alone.give(frozenset({"bodies.torque"}))["bodies.torque"])
     motion["motion.angular_velocity"] = -motion["motion.angular_velocity"]
     driven.take(motion)
     driven.step(dt)
-    assert driven.give(frozenset({"load.torque"}))["load.torque"][0, 1] > -told[0, 1]
+    assert driven.give(frozenset({"load.torque"}))["load.torque"][0, 1] > -torque[0, 1]
 
 
 @pytest.mark.full
@@ -131,25 +131,25 @@ def test_an_adiabatic_wall_takes_no_heat_and_is_warmed_by_friction():
 def test_heat_that_a_partner_takes_is_not_in_the_gas_account_of_work():
     alone, joined = (turning(is_driven=True, temperature=0.9)[0] for _ in range(2))
     joined.bind({}, frozenset({"motion", "load", "heat"}))
-    given = 0.0  # J, to the body
+    heat = 0.0  # J, to the body
     for _ in range(5):
         dt = alone.stable_dt()
         for gas in (alone, joined):
             gas.step(dt)
-        given += dt * joined.give(frozenset({"heat.heat_flow"}))["heat.heat_flow"][0]
-    assert given > 1e-3
-    assert alone.totals().work == pytest.approx(-given, rel=1e-9)  # nothing else comes in
-    assert joined.totals().work == pytest.approx(0.0, abs=1e-9 * given)
+        heat += dt * joined.give(frozenset({"heat.heat_flow"}))["heat.heat_flow"][0]
+    assert heat > 1e-3
+    assert alone.totals().work == pytest.approx(-heat, rel=1e-9)  # nothing else comes in
+    assert joined.totals().work == pytest.approx(0.0, abs=1e-9 * heat)
 
 
 @pytest.mark.parametrize(
-    ("body", "said"),
+    ("body", "sentence"),
     [
         ({"temperature": None}, "found one that slips"),
         ({"is_adiabatic": True}, "found both"),
         ({"sector": 0.5 * math.pi}, "sector"),
     ],
 )
-def test_what_cannot_turn_the_gas_is_refused(body, said):
+def test_what_cannot_turn_the_gas_is_refused(body, sentence):
     _, mistakes = turning(**body)
-    assert any(said in one for one in mistakes), mistakes
+    assert any(sentence in mistake for mistake in mistakes), mistakes

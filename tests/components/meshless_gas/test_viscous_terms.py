@@ -1,4 +1,4 @@
-"""Friction and conduction on plain arrays: stresses, slopes at walls, what walls take."""
+"""Friction and conduction on plain arrays: stresses, slopes at walls, loads on walls."""
 
 import numpy as np
 import pytest
@@ -61,9 +61,9 @@ def test_gas_that_turns_as_a_whole_has_no_friction(places: np.ndarray) -> None:
 def test_parabola_of_velocity_is_slowed_by_twice_its_viscosity(places: np.ndarray) -> None:
     z = places[:, 2]
     flow = np.stack([z * z, 0.0 * z, 0.0 * z], axis=1)
-    found = rates(np.empty_like(places), flow, np.ones(121))
-    assert found[:, 1] == pytest.approx(2.0 * LAW.viscosity, rel=1e-9)
-    assert found[:, [0, 2, 3]] == pytest.approx(0.0, abs=1e-12)
+    viscous_rates = rates(np.empty_like(places), flow, np.ones(121))
+    assert viscous_rates[:, 1] == pytest.approx(2.0 * LAW.viscosity, rel=1e-9)
+    assert viscous_rates[:, [0, 2, 3]] == pytest.approx(0.0, abs=1e-12)
 
 
 def test_heat_flows_down_a_slope_and_gathers_in_a_hollow(places: np.ndarray) -> None:

@@ -1,4 +1,4 @@
-"""Von Neumann's analysis: of waves whose limits are known, and of what scenes say is predicted."""
+"""Von Neumann's analysis of waves with known limits, and of the predictions in scenes."""
 
 import tomllib
 from pathlib import Path
@@ -28,8 +28,8 @@ def test_runge_kutta_of_third_order_holds_to_its_known_limits_on_both_axes() -> 
 
 def test_derivatives_of_the_flux_add_up_to_those_of_the_euler_equations() -> None:
     normal = np.array([0.6, 0.0, 0.8])
-    whole = np.linalg.inv(to_conservative(STATE, 1.4)) @ sum(derivatives(STATE, normal, 1.4))
-    speeds = np.sort(np.linalg.eigvals(whole).real)
+    jacobian = np.linalg.inv(to_conservative(STATE, 1.4)) @ sum(derivatives(STATE, normal, 1.4))
+    speeds = np.sort(np.linalg.eigvals(jacobian).real)
     along = STATE[1:4] @ normal
     assert speeds == pytest.approx([along - 1.0, along, along, along, along + 1.0], abs=1e-6)
 
@@ -38,15 +38,15 @@ def test_first_order_along_one_line_holds_to_the_limit_of_upwind_differences() -
     # Faster than sound every wave is carried by upwind differences: rates (exp(-iφ) - 1) u/h, that
     # are on a circle; the third-order scheme holds on it to 1.256. The bound's sum counts both
     # neighbours, u + a each over half of the spacing.
-    found = limit(cross(ratio=1e6), np.array([50.0, 0.0, 0.0]), slopes=0.0)
-    assert found == pytest.approx(1.256, rel=0.03)
+    courant_limit = limit(cross(ratio=1e6), np.array([50.0, 0.0, 0.0]), slopes=0.0)
+    assert courant_limit == pytest.approx(1.256, rel=0.03)
 
 
 def test_diffusion_holds_to_the_limit_of_the_real_axis() -> None:
     # Conduction along one line: rates -4 γμ/(Pr ρ h²) at most, over a bound of 2 γμ/(Pr ρ h²).
     slow = Fluid(viscosity=1e3, prandtl=0.3)  # heat is faster than friction
-    found = limit(cross(ratio=1e6), np.array([1e-3, 0.0, 1e-3]), 1.0, slow)
-    assert found == pytest.approx(2.5127 / 2.0, rel=0.02)
+    courant_limit = limit(cross(ratio=1e6), np.array([1e-3, 0.0, 1e-3]), 1.0, slow)
+    assert courant_limit == pytest.approx(2.5127 / 2.0, rel=0.02)
 
 
 def test_slopes_raise_the_limit_on_a_block_of_neighbours() -> None:
@@ -72,6 +72,8 @@ def test_scenes_predict_what_the_analysis_of_their_flow_says(scene: str, name: s
     gas, limit_of_scene = gas_of(path, name)
     while gas.state.time < limit_of_scene["end"] and np.isfinite(dt := gas.stable_dt()):
         gas.step(dt)
-    told = tomllib.loads(path.read_text())["stability"]
-    (predicted,) = (one["predicted"] for one in told if one["name"] == name)
+    predictions = tomllib.loads(path.read_text())["stability"]
+    (predicted,) = (
+        prediction["predicted"] for prediction in predictions if prediction["name"] == name
+    )
     assert flow_limit(gas)[0] == pytest.approx(np.max(predicted), rel=0.02)

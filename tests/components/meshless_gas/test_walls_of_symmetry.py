@@ -23,15 +23,15 @@ SIDES = Sides(
 REACH = Reach(rays=12, layers=10, first=0.01, sector=math.pi, margin=1.4, farthest=4.0)
 
 
-def both():
+def slipping_and_symmetric():
     """A cloud round a sphere of radius 1, and the same with images in its wall."""
     slipping = sphere_meridian(SphereInStream(np.zeros(3), 1.0, 3.0), REACH, SIDES)
     return slipping, mirrored(slipping, SIDES.patches["wall"])
 
 
 def test_images_lie_below_the_wall_as_deep_as_their_owners_are_above_it():
-    slipping, made = both()
-    cloud = made.cloud
+    slipping, symmetric = slipping_and_symmetric()
+    cloud = symmetric.cloud
     images = np.arange(len(slipping.cloud.positions), len(cloud.positions))
     owner = cloud.owner[images - cloud.nodes]
     depth, height = (np.linalg.norm(cloud.positions[rows], axis=1) for rows in (images, owner))
@@ -42,16 +42,16 @@ def test_images_lie_below_the_wall_as_deep_as_their_owners_are_above_it():
 
 
 def test_nodes_of_the_wall_have_whole_stencils_exact_of_linear_fields():
-    slipping, made = both()
-    wall = made.cloud.kind == SYMMETRY
+    slipping, symmetric = slipping_and_symmetric()
+    wall = symmetric.cloud.kind == SYMMETRY
     assert wall.sum() == REACH.rays == (slipping.cloud.kind == SLIP).sum()
-    assert (made.neighbours[wall] != np.flatnonzero(wall)[:, None]).all()
-    coefficients = stencils(made.cloud, made.neighbours, False, Team(1)).coefficients
+    assert (symmetric.neighbours[wall] != np.flatnonzero(wall)[:, None]).all()
+    coefficients = stencils(symmetric.cloud, symmetric.neighbours, False, Team(1)).coefficients
     slope = np.array([0.3, -1.2, 0.7])
-    field = made.cloud.positions @ slope
-    rise = field[made.neighbours] - field[:, None]
-    found = (coefficients * rise[:, :, None]).sum(axis=1)[wall]
-    assert found == pytest.approx(np.tile(slope, (len(found), 1)), abs=1e-9)
+    field = symmetric.cloud.positions @ slope
+    rise = field[symmetric.neighbours] - field[:, None]
+    gradients = (coefficients * rise[:, :, None]).sum(axis=1)[wall]
+    assert gradients == pytest.approx(np.tile(slope, (len(gradients), 1)), abs=1e-9)
 
 
 def test_velocity_through_the_wall_is_taken_with_its_energy():

@@ -1,4 +1,4 @@
-"""A scene loads what it needs: friction only where the gas has it."""
+"""A scene loads only the modules that it needs: friction only where the gas has it."""
 
 import subprocess
 import sys
@@ -20,14 +20,16 @@ print(*sys.modules)
 """
 
 
-def loaded(viscous: bool, wall: str) -> str:
-    """What a process has loaded that puts a sphere into a stream."""
+def loaded_modules(viscous: bool, wall: str) -> str:
+    """Modules that a process loads to put a sphere into a stream."""
     code = CODE.replace("VISCOUS", str(viscous)).replace("WALL", wall)
-    found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
-    assert found.returncode == 0, found.stderr
-    return found.stdout
+    process = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert process.returncode == 0, process.stderr
+    return process.stdout
 
 
 def test_friction_is_loaded_only_where_the_gas_has_it() -> None:
-    assert "meshless_gas.viscous" not in loaded(False, "{'kind': 'slip'}")
-    assert "meshless_gas.viscous" in loaded(True, "{'kind': 'isothermal', 'temperature': 1.0}")
+    assert "meshless_gas.viscous" not in loaded_modules(False, "{'kind': 'slip'}")
+    assert "meshless_gas.viscous" in loaded_modules(
+        True, "{'kind': 'isothermal', 'temperature': 1.0}"
+    )
