@@ -1,4 +1,4 @@
-"""What test_fe_plate_ranks.py runs on several ranks; rank 0 writes what came out."""
+"""Cases of a structure that test_fe_plate_ranks.py runs on ranks; rank 0 writes the results."""
 
 import json
 
@@ -71,7 +71,7 @@ PARAMS = {
         "integration": "full",
         "fixed": [{"lowest": [0.0, 0.0, 0.0], "highest": [0.0, 0.012, 0.004]}],
     },
-    "glued": {  # particles hang on a face and add their mass, of which some is let go
+    "glued": {  # glued particles add their mass to a face; some of it is released
         "parts": [{**BLOCK, "velocity": [0.0, 0.0, 0.0]}],
         "coupled_faces": [{"lowest": [0.0, 0.0, 0.02], "highest": [0.016, 0.012, 0.02]}],
         "gauges": {"part_gauge": True},

@@ -33,8 +33,8 @@ def test_a_state_of_two_ranks_goes_on_with_three_and_other_borders(name, resumed
 
 
 def test_elements_erode_in_what_is_compared(folder):
-    reached = np.load(folder / "struck-1.npz")
-    assert reached["part_gauge.eroded"][1] > 0.0
+    results = np.load(folder / "struck-1.npz")
+    assert results["part_gauge.eroded"][1] > 0.0
 
 
 def block(elements):
@@ -57,10 +57,10 @@ def test_every_node_and_element_has_one_owner_that_computes_it():
     assert np.array_equal(np.sort(elements), np.arange(len(built.mesh.corner)))
     for part in parts:
         blocks = built.places.point[:, 0] // 16
-        here = np.isin(blocks, part.block)
-        assert here[part.element].all()
-        mine = np.isin(built.mesh.corner, part.node[: part.moving]).any(axis=1)
-        assert here[mine].all()  # all elements at its nodes
+        in_part = np.isin(blocks, part.block)
+        assert in_part[part.element].all()
+        at_own_nodes = np.isin(built.mesh.corner, part.node[: part.moving]).any(axis=1)
+        assert in_part[at_own_nodes].all()  # all elements at its nodes
 
 
 def test_more_ranks_than_a_mesh_can_feed_are_refused():
@@ -68,11 +68,11 @@ def test_more_ranks_than_a_mesh_can_feed_are_refused():
         owners(structure(block([2, 2, 2])), 3)
 
 
-@pytest.mark.parametrize("moved", [0, 1, -7])
-def test_ranks_step_few_blocks_twice_and_most_without_waiting(moved, monkeypatch):
+@pytest.mark.parametrize("shift", [0, 1, -7])
+def test_ranks_step_few_blocks_twice_and_most_without_waiting(shift, monkeypatch):
     """The cut lies between two layers, or within one; then its edge is stepped twice too."""
     cut = bisection._cut
-    monkeypatch.setattr(bisection, "_cut", lambda *arguments: cut(*arguments) + moved)
+    monkeypatch.setattr(bisection, "_cut", lambda *arguments: cut(*arguments) + shift)
     built = structure(block([20, 16, 32]))  # 640 blocks, 32 in a layer
     owner = owners(built, 2)
     numbers = []
@@ -90,4 +90,4 @@ def test_ranks_step_few_blocks_twice_and_most_without_waiting(moved, monkeypatch
     twice = len(np.intersect1d(*numbers))
     assert 640 == len(np.union1d(*numbers))
     assert twice <= 32 + 4  # two rows
-    assert abs(len(numbers[0]) - len(numbers[1])) <= 4 + 2 * abs(moved)
+    assert abs(len(numbers[0]) - len(numbers[1])) <= 4 + 2 * abs(shift)

@@ -18,9 +18,9 @@ def test_three_ranks_compute_what_one_does_to_the_bit(name, folder):
 
 
 @pytest.mark.parametrize("name", NAMES)
-@pytest.mark.parametrize("goes_on", ["1-2", "2-1"])
-def test_a_state_goes_on_with_any_number_of_ranks(name, goes_on, resumed):
-    assert differences(resumed, f"{name}-1-1", f"{name}-{goes_on}") == []
+@pytest.mark.parametrize("ranks", ["1-2", "2-1"])
+def test_a_state_goes_on_with_any_number_of_ranks(name, ranks, resumed):
+    assert differences(resumed, f"{name}-1-1", f"{name}-{ranks}") == []
 
 
 def test_borders_elsewhere_change_no_bit(folder, tmp_path, on_ranks):

@@ -26,12 +26,12 @@ HOT, COLD, BEYOND = (0.0, 0.01, 0.01), (0.03, 0.0, 0.0), (0.03, 0.0, 0.01)  # m,
 MEANS = {1: 179.05, 2: 183.32, 3: 177.47, 4: 175.15, 6: 172.45, 8: 171.05, 12: 169.62, 24: 168.16}
 
 
-def block(size, elements, temperature=0.0, **given):
+def block(size, elements, temperature=0.0, **keys):
     part = ConductingPart(
         lowest=(0.0, 0.0, 0.0), highest=size, elements=elements, temperature=temperature,
         conductivity=K, density=RHO_C, specific_heat=1.0,
     )  # fmt: skip
-    return FeHeat(FeHeatParams(parts=(part,), **given))
+    return FeHeat(FeHeatParams(parts=(part,), **keys))
 
 
 def face(at, size, temperature):
@@ -41,37 +41,37 @@ def face(at, size, temperature):
 
 def bar_with_points(n):
     points = [(HOT, 500.0), (COLD, 0.0), (BEYOND, 0.0)]
-    held = tuple(FixedTemperature(point=one, temperature=kelvin) for one, kelvin in points)
-    return block((0.03, 0.01, 0.01), (3 * n, n, n), 170.0, steady=True, fixed_temperatures=held)
+    fixed = tuple(FixedTemperature(point=point, temperature=kelvin) for point, kelvin in points)
+    return block((0.03, 0.01, 0.01), (3 * n, n, n), 170.0, steady=True, fixed_temperatures=fixed)
 
 
 def test_temperatures_held_at_points_depend_on_the_mesh():
     """The mean is that of the table; the heat that enters goes to nothing with the elements."""
     flow = {}
     for n, mean in MEANS.items():
-        made = bar_with_points(n)
-        made.step(1.0)
-        found = made.give({"parts.temperature", "held.heat_flow"})
-        assert found["parts.temperature"][0] == pytest.approx(mean, rel=2e-3)
-        assert abs(found["held.heat_flow"].sum()) < 1e-8 * found["held.heat_flow"][0]
-        flow[n] = found["held.heat_flow"][0] / K
+        body = bar_with_points(n)
+        body.step(1.0)
+        outputs = body.give({"parts.temperature", "held.heat_flow"})
+        assert outputs["parts.temperature"][0] == pytest.approx(mean, rel=2e-3)
+        assert abs(outputs["held.heat_flow"].sum()) < 1e-8 * outputs["held.heat_flow"][0]
+        flow[n] = outputs["held.heat_flow"][0] / K
     assert flow[24] == pytest.approx(95.1 * 0.01 / 24, rel=0.01)
     assert flow[12] / flow[24] == pytest.approx(2.0, rel=0.02)
 
 
 def test_temperatures_are_those_of_another_code():
-    """scikit-fem, trilinear elements, of the same mesh, to what conjugate gradients leave."""
+    """scikit-fem, trilinear elements, the same mesh, to the residual of conjugate gradients."""
     n = 4
-    made = bar_with_points(n)
-    made.step(1.0)
+    body = bar_with_points(n)
+    body.step(1.0)
     lines = [np.linspace(0.0, 0.01 * k, k * n + 1) for k in (3, 1, 1)]
     mesh = MeshHex.init_tensor(*lines)
-    held = [int(np.argmin(((mesh.p.T - one) ** 2).sum(axis=1))) for one in (HOT, COLD, BEYOND)]
+    nodes = [int(np.argmin(((mesh.p.T - point) ** 2).sum(axis=1))) for point in (HOT, COLD, BEYOND)]
     x = np.zeros(mesh.p.shape[1])
-    x[held[0]] = 500.0
-    other = solve(*condense(asm(laplace, Basis(mesh, ElementHex1())), x=x, D=np.array(held)))
+    x[nodes[0]] = 500.0
+    reference = solve(*condense(asm(laplace, Basis(mesh, ElementHex1())), x=x, D=np.array(nodes)))
     order = np.lexsort(np.round(mesh.p[::-1], 9))
-    assert made.state.temperature == pytest.approx(other[order], abs=1e-6)
+    assert body.state.temperature == pytest.approx(reference[order], abs=1e-6)
 
 
 def test_a_linear_temperature_is_exact_in_any_mesh():
@@ -88,12 +88,12 @@ def test_a_linear_temperature_is_exact_in_any_mesh():
         FixedTemperature(lowest=(-1, -1, z), highest=(1, 1, z), temperature=t)
         for z, t in ((0, 9), (2, 5))
     ]
-    made = FeHeat(FeHeatParams(parts=(part,), fixed_temperatures=tuple(ends), steady=True))
-    made.step(1.0)
-    mesh = made.model.mesh
-    assert made.state.temperature == pytest.approx(9.0 - 2.0 * mesh.node[:, 2], abs=1e-8)
-    area = made.model.volume.sum() / 2.0
-    flow = made.give({"held.heat_flow"})["held.heat_flow"]
+    body = FeHeat(FeHeatParams(parts=(part,), fixed_temperatures=tuple(ends), steady=True))
+    body.step(1.0)
+    mesh = body.model.mesh
+    assert body.state.temperature == pytest.approx(9.0 - 2.0 * mesh.node[:, 2], abs=1e-8)
+    area = body.model.volume.sum() / 2.0
+    flow = body.give({"held.heat_flow"})["held.heat_flow"]
     assert flow == pytest.approx([2.0 * K * area, -2.0 * K * area], rel=1e-8)
 
 
@@ -101,42 +101,42 @@ def test_steady_heat_through_half_a_side_follows_its_series():
     """A square plate, heated on half of one side and held on the opposite: within 0.5 %."""
     n, flux = 16, 5.0
     heated = Faces(lowest=(0.0, 0.0, 0.0), highest=(0.0, 0.5, 0.1))
-    made = block(
+    body = block(
         (1.0, 1.0, 0.1), (n, n, 1), steady=True,
         fixed_temperatures=(face(1.0, (1.0, 1.0, 0.1), 0.0),),
         fluxes=(Flux(faces=heated, flux=flux),),
     )  # fmt: skip
-    made.step(1.0)
-    x, y, _ = made.model.mesh.node.T
+    body.step(1.0)
+    x, y, _ = body.model.mesh.node.T
     exact = 0.5 * flux / K * (1.0 - x)
     for m in range(1, 200, 2):
         w = m * math.pi
         # cosh is taken out, so that nothing overflows
         ratio = (np.exp(-w * x) - np.exp(-w * (2.0 - x))) / (1.0 + math.exp(-2.0 * w))
         exact += 2.0 * flux / (K * w * w) * math.sin(0.5 * w) * np.cos(w * y) * ratio
-    assert np.abs(made.state.temperature - exact).max() < 5e-3 * exact.max()
+    assert np.abs(body.state.temperature - exact).max() < 5e-3 * exact.max()
 
 
-def cooled(dt, n=32, seconds=0.15):
-    """A slab that was at 1 K, whose ends are at 0 K since the start; temperatures and places."""
+def temperatures_in_slab(dt, n=32, seconds=0.15):
+    """Temperatures and places in a slab, at first of 1 K, whose ends are held at 0 K."""
     size = (1.0, 1.0 / n, 1.0 / n)
     ends = (face(0.0, size, 0.0), face(1.0, size, 0.0))
-    made = block(size, (n, 1, 1), 1.0, fixed_temperatures=ends)
+    body = block(size, (n, 1, 1), 1.0, fixed_temperatures=ends)
     for _ in range(round(seconds / dt)):
-        made.step(dt)
-    return made.state.temperature, made.model.mesh.node[:, 0]
+        body.step(dt)
+    return body.state.temperature, body.model.mesh.node[:, 0]
 
 
 def test_a_slab_cools_as_its_series_says():
     """Within 0.5 % of the highest temperature; at second order in the step."""
-    found, x = cooled(0.01)
+    temperatures, x = temperatures_in_slab(0.01)
     exact = np.zeros_like(x)
     for m in range(1, 40, 2):
         fading = math.exp(-K / RHO_C * (m * math.pi) ** 2 * 0.15)
         exact += 4.0 / (m * math.pi) * np.sin(m * math.pi * x) * fading
-    assert np.abs(found - exact).max() < 5e-3 * exact.max()
-    fine, _ = cooled(0.15 / 128)
-    errors = [np.abs(cooled(0.15 / steps)[0] - fine).max() for steps in (8, 16)]
+    assert np.abs(temperatures - exact).max() < 5e-3 * exact.max()
+    fine, _ = temperatures_in_slab(0.15 / 128)
+    errors = [np.abs(temperatures_in_slab(0.15 / steps)[0] - fine).max() for steps in (8, 16)]
     assert math.log2(errors[0] / errors[1]) == pytest.approx(2.0, abs=0.25)
 
 
@@ -145,65 +145,65 @@ def test_a_flux_heats_as_its_series_says():
     n, flux, seconds = 32, 5.0, 0.3
     size = (1.0, 0.1, 0.1)
     heated = Faces(lowest=(0.0, 0.0, 0.0), highest=(0.0, 0.1, 0.1))
-    made = block(
+    body = block(
         size, (n, 1, 1), fluxes=(Flux(faces=heated, flux=flux),), node_gauges=((0.0, 0.0, 0.0),)
     )
     for _ in range(60):
-        made.step(seconds / 60)
+        body.step(seconds / 60)
     time = K / RHO_C * seconds
     series = sum(
         math.exp(-((m * math.pi) ** 2) * time) / m**2 for m in range(1, 40)
     ) * 2.0 / math.pi**2  # fmt: skip
     exact = flux / K * (time + 1.0 / 3.0 - series)
-    assert made.give({"node_gauge.temperature"})["node_gauge.temperature"][0] == pytest.approx(
+    assert body.give({"node_gauge.temperature"})["node_gauge.temperature"][0] == pytest.approx(
         exact, rel=5e-3
     )
-    assert made.totals().internal == pytest.approx(flux * 0.01 * seconds, rel=1e-12)
+    assert body.totals().internal == pytest.approx(flux * 0.01 * seconds, rel=1e-12)
 
 
 @pytest.mark.parametrize("is_held", [True, False])
 def test_heat_is_conserved_whatever_the_tolerance(is_held):
-    """What partners and holders give is what the body gains, to rounding."""
+    """Heat of partners and of held temperatures is the body's gain, to rounding."""
     size = (0.3, 0.2, 0.2)
-    held = (face(0.0, size, 7.0),) if is_held else ()
-    made = block(size, (3, 2, 2), 3.0, tolerance=1e-3, fixed_temperatures=held)
-    heat = np.random.default_rng(1).normal(size=len(made.surface))
-    before, dt = made.totals().internal, 0.02
-    made.take({"node_heat.heat_flow": heat})
-    made.step(dt)
-    given = heat.sum()
+    fixed = (face(0.0, size, 7.0),) if is_held else ()
+    body = block(size, (3, 2, 2), 3.0, tolerance=1e-3, fixed_temperatures=fixed)
+    heat = np.random.default_rng(1).normal(size=len(body.surface))
+    before, dt = body.totals().internal, 0.02
+    body.take({"node_heat.heat_flow": heat})
+    body.step(dt)
+    heat_flow = heat.sum()
     if is_held:
-        given += made.give({"held.heat_flow"})["held.heat_flow"].sum()
-    assert made.totals().internal - before == pytest.approx(dt * given, rel=1e-10)
+        heat_flow += body.give({"held.heat_flow"})["held.heat_flow"].sum()
+    assert body.totals().internal - before == pytest.approx(dt * heat_flow, rel=1e-10)
 
 
 @pytest.mark.parametrize(("size", "step"), [((1.0, 1.0, 1e-3), 1e9), ((1.0, 1e-3, 1e-3), 1e-9)])
 def test_very_long_and_very_short_steps_stay_in_bounds_in_flat_elements(size, step):
     """Temperatures stay between those that are held."""
     ends = (face(0.0, size, 400.0), face(1.0, size, 300.0))
-    made = block(size, (10, 10, 3), 300.0, fixed_temperatures=ends)
+    body = block(size, (10, 10, 3), 300.0, fixed_temperatures=ends)
     for _ in range(3):
-        made.step(step)
-    assert made.state.temperature.min() > 300.0 - 1e-6
-    assert made.state.temperature.max() < 400.0 + 1e-6
+        body.step(step)
+    assert body.state.temperature.min() > 300.0 - 1e-6
+    assert body.state.temperature.max() < 400.0 + 1e-6
 
 
 def test_a_long_step_overshoots_by_a_quarter_at_most():
     for dt in (0.5, 1.25, 5.0):
-        assert -0.26 < cooled(dt, seconds=dt)[0].min() < 0.0
+        assert -0.26 < temperatures_in_slab(dt, seconds=dt)[0].min() < 0.0
 
 
 def test_heat_that_comes_from_outside_is_counted():
     size = (1.0, 0.5, 0.5)
-    made = block(
+    body = block(
         size, (3, 2, 2), 3.0, fixed_temperatures=(face(0.0, size, 400.0), face(1.0, size, 300.0))
     )
-    begun = made.totals()
+    start = body.totals()
     for _ in range(4):
-        made.step(0.02)
-    now = made.totals()
-    assert now.internal - begun.internal == pytest.approx(now.work - begun.work, rel=1e-10)
-    assert now.work > 0.0
+        body.step(0.02)
+    end = body.totals()
+    assert end.internal - start.internal == pytest.approx(end.work - start.work, rel=1e-10)
+    assert end.work > 0.0
 
 
 def test_conduction_and_mechanics_import_nothing_of_each_other():
@@ -211,19 +211,19 @@ def test_conduction_and_mechanics_import_nothing_of_each_other():
         "import importlib, json, sys; importlib.import_module(sys.argv[1]); "
         "print(json.dumps([n for n in sys.modules if n.startswith('quintet.components.fe_plate')]))"
     )
-    found = {}
+    modules = {}
     for name in ("fe_plate.component", "fe_plate.heat.component"):
         line = [sys.executable, "-c", code, f"quintet.components.{name}"]
-        said = subprocess.run(line, capture_output=True, text=True, check=True).stdout
-        found[name] = set(json.loads(said))
-    assert not any(".heat" in one for one in found["fe_plate.component"])
-    strange = {"component", "kernels", "state", "build", "laws"}
-    parts = [one.split(".")[3:] for one in found["fe_plate.heat.component"]]
-    assert not any(one and one[0] in strange for one in parts)
+        text = subprocess.run(line, capture_output=True, text=True, check=True).stdout
+        modules[name] = set(json.loads(text))
+    assert not any(".heat" in module for module in modules["fe_plate.component"])
+    mechanics = {"component", "kernels", "state", "build", "laws"}
+    parts = [module.split(".")[3:] for module in modules["fe_plate.heat.component"]]
+    assert not any(part and part[0] in mechanics for part in parts)
 
 
 @pytest.mark.parametrize(
-    ("given", "words"),
+    ("keys", "words"),
     [
         ({"steady": True}, "needs a fixed temperature somewhere"),
         (
@@ -237,9 +237,9 @@ def test_conduction_and_mechanics_import_nothing_of_each_other():
         ({"coupled_faces": (Faces(lowest=(9, 9, 9), highest=(9, 9, 9)),)}, "must hold an outer"),
     ],
 )
-def test_what_cannot_be_built_is_refused(given, words):
+def test_what_cannot_be_built_is_refused(keys, words):
     with pytest.raises(SceneError, match=words):
-        block((1.0, 1.0, 1.0), (1, 1, 1), **given)
+        block((1.0, 1.0, 1.0), (1, 1, 1), **keys)
 
 
 @pytest.mark.parametrize(
@@ -268,19 +268,19 @@ def test_what_contradicts_itself_is_refused(make, words):
         make()
 
 
-@pytest.mark.parametrize(("share", "is_told"), [(0.2, False), (2.0, True)])
-def test_steps_that_pass_over_the_transient_are_warned_of(share, is_told):
+@pytest.mark.parametrize(("share", "is_warned"), [(0.2, False), (2.0, True)])
+def test_steps_that_pass_over_the_transient_are_warned_of(share, is_warned):
     """A step is long beside L²/(π² a), in which heat crosses a part of length L."""
     part = ConductingPart(
         lowest=(0.0,) * 3, highest=(0.03, 0.01, 0.01), elements=(6, 1, 1), conductivity=237.0,
         density=2700.0, specific_heat=900.0,
     )  # fmt: skip
-    held = FixedTemperature(lowest=(0.03, 0.0, 0.0), highest=(0.03, 0.01, 0.01), temperature=400.0)
-    made = FeHeat(FeHeatParams(parts=(part,), fixed_temperatures=(held,)))
+    fixed = FixedTemperature(lowest=(0.03, 0.0, 0.0), highest=(0.03, 0.01, 0.01), temperature=400.0)
+    body = FeHeat(FeHeatParams(parts=(part,), fixed_temperatures=(fixed,)))
     crossing = 0.03**2 * 2700.0 * 900.0 / (math.pi**2 * 237.0)
     for _ in range(3):
-        made.step(share * crossing)
-    assert bool(made.warnings()) == is_told
-    other = FeHeat(made.params)
-    other.load(made.save())
-    assert other.warnings() == made.warnings()
+        body.step(share * crossing)
+    assert bool(body.warnings()) == is_warned
+    resumed = FeHeat(body.params)
+    resumed.load(body.save())
+    assert resumed.warnings() == body.warnings()

@@ -1,4 +1,4 @@
-"""How many points elements have by themselves, and what is said where bending is too soft."""
+"""Default numbers of integration points, and warnings where bending is too soft."""
 
 import dataclasses
 
@@ -24,38 +24,38 @@ ELASTIC = Material(density=2700.0, youngs_modulus=7e10, poissons_ratio=0.0)
 CALM = {"viscosity_linear": 0.0, "viscosity_quadratic": 0.0}
 
 
-def beam(elements, **given):
+def beam(elements, **changes):
     part = Part(lowest=(0.0,) * 3, highest=(0.2, 0.01, 0.01), elements=elements, material=ELASTIC)
-    return dataclasses.replace(part, **given)
+    return dataclasses.replace(part, **changes)
 
 
-def cantilever(elements, **given):
+def cantilever(elements, **keys):
     fixed = (Fixed(lowest=(0.0,) * 3, highest=(0.0, 1.0, 1.0)),)
     params = {"parts": (beam(elements),), "fixed": fixed, "gravity": (0.0, 0.0, -9.81)}
-    return FePlate(FePlateParams(**params | CALM | given))
+    return FePlate(FePlateParams(**params | CALM | keys))
 
 
 @pytest.mark.parametrize(("layers", "points"), [(1, 8), (4, 8), (7, 8), (8, 1), (12, 1)])
 def test_thin_parts_have_eight_points_where_layers_are_few(layers, points):
     params = FePlateParams(parts=(beam((20, 8, layers)),))
-    made = FePlate(params)
-    assert made.places.point.shape[1] == points
-    assert made.items() == 160 * layers
-    assert bool(made.notes()) == bool(plan(params).notes) == (points == 8)
+    structure = FePlate(params)
+    assert structure.places.point.shape[1] == points
+    assert structure.items() == 160 * layers
+    assert bool(structure.notes()) == bool(plan(params).notes) == (points == 8)
 
 
 @pytest.mark.parametrize(
-    "given",
+    "changes",
     [
         {"spall_stress": 1e9},
         {"damage": JohnsonCookDamage(d1=0.1), "johnson_cook": JohnsonCook(a=1e9)},
     ],
 )
-def test_what_shocks_or_fails_keeps_one_point_and_says_what_it_lacks(given):
-    law = dataclasses.replace(ELASTIC, **given)
-    made = FePlate(FePlateParams(parts=(beam((20, 8, 4), material=law),)))
-    (note,) = made.notes()
-    assert made.places.point.shape[1] == 1
+def test_what_shocks_or_fails_keeps_one_point_and_says_what_it_lacks(changes):
+    law = dataclasses.replace(ELASTIC, **changes)
+    structure = FePlate(FePlateParams(parts=(beam((20, 8, 4), material=law),)))
+    (note,) = structure.notes()
+    assert structure.places.point.shape[1] == 1
     assert "parts.0 has 4 elements" in note and "1/n² = 6% of its stiffness" in note
 
 
@@ -81,9 +81,9 @@ def test_layers_are_counted_in_boxes_cylinders_and_cutouts():
 
 @pytest.mark.parametrize("layers", [1, 3, 9])
 def test_layers_of_a_mesh_are_counted_from_side_to_side(tmp_path, layers):
-    made = FePlate(FePlateParams(parts=(beam((12, layers, 10)),), integration="reduced"))
-    cells = [("hexahedron", made.mesh.corner)]
-    meshio.Mesh(made.mesh.node, cells).write(tmp_path / "beam.vtk")
+    structure = FePlate(FePlateParams(parts=(beam((12, layers, 10)),), integration="reduced"))
+    cells = [("hexahedron", structure.mesh.corner)]
+    meshio.Mesh(structure.mesh.node, cells).write(tmp_path / "beam.vtk")
     part = Part(shape="mesh", file=str(tmp_path / "beam.vtk"), material=ELASTIC)
     assert fewest_layers(part) == (layers if layers < 8 else MANY)
 
@@ -91,54 +91,57 @@ def test_layers_of_a_mesh_are_counted_from_side_to_side(tmp_path, layers):
 def test_a_cantilever_of_few_layers_bends_as_beam_theory_has_it():
     """It swings to twice its static deflection; reduced, two layers lack a third."""
     deflection = 2700.0 * 9.81 * 0.2**4 / (8.0 * 7e10 * 0.01**2 / 12.0)  # m
-    made = cantilever((20, 1, 2))
-    least = 0.0
-    while made.accumulated.time < 2.7e-3:
-        made.step(made.stable_dt())
-        least = min(least, float(made.state.position[made.mesh.node[:, 0] == 0.2, 2].mean() - 5e-3))
-    assert least == pytest.approx(-2.0 * deflection, rel=0.03)
-    assert not made.warnings()
+    structure = cantilever((20, 1, 2))
+    lowest = 0.0
+    while structure.accumulated.time < 2.7e-3:
+        structure.step(structure.stable_dt())
+        lowest = min(
+            lowest,
+            float(structure.state.position[structure.mesh.node[:, 0] == 0.2, 2].mean() - 5e-3),
+        )
+    assert lowest == pytest.approx(-2.0 * deflection, rel=0.03)
+    assert not structure.warnings()
 
 
 def test_bending_that_the_stabilisation_bears_is_warned_of_and_the_warning_is_part_of_the_state():
-    made = cantilever((20, 1, 2), integration="reduced")
+    structure = cantilever((20, 1, 2), integration="reduced")
     for _ in range(4 * EVERY + 1):
-        made.step(made.stable_dt())
-    (text,) = made.warnings().values()
+        structure.step(structure.stable_dt())
+    (text,) = structure.warnings().values()
     assert "one quadrature point does not see" in text and 'integration = "full"' in text
-    other = cantilever((20, 1, 2), integration="reduced")
-    assert not other.warnings()
-    other.load(made.save())
-    assert other.warnings() == made.warnings()
+    resumed = cantilever((20, 1, 2), integration="reduced")
+    assert not resumed.warnings()
+    resumed.load(structure.save())
+    assert resumed.warnings() == structure.warnings()
 
 
 def test_a_stabilisation_that_is_too_stiff_is_warned_of():
-    made = cantilever((20, 1, 8), integration="reduced", hourglass=2.0)
+    structure = cantilever((20, 1, 8), integration="reduced", hourglass=2.0)
     for _ in range(8 * EVERY + 1):
-        made.step(made.stable_dt())
-    assert set(made.warnings()) == {"hourglass"}
+        structure.step(structure.stable_dt())
+    assert set(structure.warnings()) == {"hourglass"}
 
 
 def test_viscosity_that_takes_the_motion_of_an_elastic_block_is_warned_of():
     part = beam((20, 2, 2), velocity=(0.0, 0.0, 0.0))
     for viscosity, subjects in ((0.0, set()), (5.0, {"viscosity"})):
-        made = FePlate(FePlateParams(parts=(part,), **CALM | {"viscosity_linear": viscosity}))
-        made.state.velocity[:, 0] = -np.sin(np.pi * (made.mesh.node[:, 0] / 0.2 - 0.5))
+        block = FePlate(FePlateParams(parts=(part,), **CALM | {"viscosity_linear": viscosity}))
+        block.state.velocity[:, 0] = -np.sin(np.pi * (block.mesh.node[:, 0] / 0.2 - 0.5))
         for _ in range(6 * EVERY + 1):
-            made.step(made.stable_dt())
-        assert set(made.warnings()) >= subjects and bool(made.warnings()) == bool(subjects)
+            block.step(block.stable_dt())
+        assert set(block.warnings()) >= subjects and bool(block.warnings()) == bool(subjects)
 
 
 def test_energy_that_nothing_brings_is_warned_of():
-    made = cantilever((20, 1, 1))
-    made.state.velocity[made.mesh.node[:, 0] > 0.15, 2] = 1.0
+    structure = cantilever((20, 1, 1))
+    structure.state.velocity[structure.mesh.node[:, 0] > 0.15, 2] = 1.0
     for _ in range(EVERY):
-        made.step(made.stable_dt())
-    assert not made.warnings()
-    made.state.velocity[:] *= 1.1
+        structure.step(structure.stable_dt())
+    assert not structure.warnings()
+    structure.state.velocity[:] *= 1.1
     for _ in range(EVERY):
-        made.step(made.stable_dt())
-    assert set(made.warnings()) == {"energy"}
+        structure.step(structure.stable_dt())
+    assert set(structure.warnings()) == {"energy"}
 
 
 def test_a_stabilisation_of_nothing_is_refused():

@@ -38,12 +38,12 @@ BOTH = (
 )
 
 
-def written(tmp_path, text, name="two.k"):
+def write_file(tmp_path, text, name="two.k"):
     (tmp_path / name).write_text(text)
     return str(tmp_path / name)
 
 
-def built(file, *, parts=(), velocity=None, scale=1e-3, time_scale=1.0, **keys):
+def plate_of(file, *, parts=(), velocity=None, scale=1e-3, time_scale=1.0, **keys):
     part = Part(
         shape="mesh", file=file, scale=scale, material=ELASTIC, parts=parts, velocity=velocity,
         time_scale=time_scale,
@@ -71,7 +71,7 @@ FORMS = {
 
 @pytest.mark.parametrize("text", FORMS.values(), ids=FORMS)
 def test_every_format_gives_the_same_mesh(tmp_path, text):
-    mesh = read(written(tmp_path, text))
+    mesh = read(write_file(tmp_path, text))
     assert mesh.node.tolist() == [list(place) for place in PLACES]
     assert mesh.corner.tolist() == [list(range(8)), list(range(8, 16))]
 
@@ -80,19 +80,19 @@ def test_numbers_of_fortran_are_read(tmp_path):
     text = BOTH.replace(f"{10.0:16.8f}", f"{'1.0D+1':>16}", 1).replace(
         f"{10.0:16.8f}", f"{'1.0+1':>16}", 1
     )
-    assert read(written(tmp_path, text)).node.tolist() == [list(place) for place in PLACES]
+    assert read(write_file(tmp_path, text)).node.tolist() == [list(place) for place in PLACES]
 
 
 def test_files_include_others_below_their_folder(tmp_path):
     (tmp_path / "below").mkdir()
-    written(tmp_path, f"*NODE\n{nodes()}*INCLUDE\nsolids.key\n", "below/nodes.k")
-    written(tmp_path, f"*ELEMENT_SOLID\n{solids()}", "below/solids.key")
-    file = written(tmp_path, "*KEYWORD\n*INCLUDE\nbelow/nodes.k\n*END\n")
+    write_file(tmp_path, f"*NODE\n{nodes()}*INCLUDE\nsolids.key\n", "below/nodes.k")
+    write_file(tmp_path, f"*ELEMENT_SOLID\n{solids()}", "below/solids.key")
+    file = write_file(tmp_path, "*KEYWORD\n*INCLUDE\nbelow/nodes.k\n*END\n")
     assert len(read(file).corner) == 2
-    again = written(tmp_path, "*KEYWORD\n*INCLUDE\nagain.k\n", "again.k")
+    recursive = write_file(tmp_path, "*KEYWORD\n*INCLUDE\nagain.k\n", "again.k")
     with pytest.raises(SceneError, match=r"again.k, line 3: a file must not include itself"):
-        read(again)
-    outside = written(tmp_path, "*KEYWORD\n*INCLUDE\n../../two.k\n", "below/outside.k")
+        read(recursive)
+    outside = write_file(tmp_path, "*KEYWORD\n*INCLUDE\n../../two.k\n", "below/outside.k")
     with pytest.raises(SceneError, match=r"outside.k, line 3: \*INCLUDE must name a file in the"):
         read(outside)
 
@@ -107,7 +107,7 @@ SETS = (
 
 
 def test_sets_and_parts_have_names_and_numbers(tmp_path):
-    mesh = read(written(tmp_path, BOTH + SETS))
+    mesh = read(write_file(tmp_path, BOTH + SETS))
     assert mesh.sets["left, face"].tolist() == mesh.sets["5"].tolist() == [0, 1, 2, 3]
     assert mesh.sets["6"].tolist() == [0, 1, 15]  # 101, 103, and 131
     groups = {key: rows.tolist() for key, rows in mesh.groups.items()}
@@ -117,8 +117,8 @@ def test_sets_and_parts_have_names_and_numbers(tmp_path):
 
 
 def test_a_scene_chooses_nodes_and_elements_by_sets_of_the_file(tmp_path):
-    plate = built(
-        written(tmp_path, BOTH + SETS),
+    plate = plate_of(
+        write_file(tmp_path, BOTH + SETS),
         fixed=(Fixed(node_set="left, face"),),
         gauges=Gauges(element_set_gauges=(Elements(element_set="Foot, new"),)),
     )
@@ -128,14 +128,14 @@ def test_a_scene_chooses_nodes_and_elements_by_sets_of_the_file(tmp_path):
 
 def test_a_title_of_two_parts_is_no_name(tmp_path):
     text = BOTH.replace("Foot, new", "Bar")
-    mesh = read(written(tmp_path, text))
+    mesh = read(write_file(tmp_path, text))
     assert "Bar" not in mesh.groups and mesh.groups["part 3"].tolist() == [0]
     assert any("titles of several parts or sets are no names: Bar" in note for note in mesh.notes)
 
 
 @pytest.mark.parametrize("part", [4, "4", "part 4", "Foot, new"])
 def test_parts_are_chosen_by_number_or_title(tmp_path, part):
-    mesh = read(written(tmp_path, BOTH + SETS), "refuse", (part,))
+    mesh = read(write_file(tmp_path, BOTH + SETS), "refuse", (part,))
     assert mesh.node.tolist() == [list(place) for place in PLACES[8:]]
     assert mesh.groups["both"].tolist() == [0] and mesh.groups["part 3"].tolist() == []
     assert any("1 elements of other parts are left out" in note for note in mesh.notes)
@@ -143,7 +143,7 @@ def test_parts_are_chosen_by_number_or_title(tmp_path, part):
 
 def test_a_part_that_the_file_lacks_is_refused(tmp_path):
     with pytest.raises(SceneError, match=r"part Baar.*Bar"):
-        read(written(tmp_path, BOTH), "refuse", ("Baar",))
+        read(write_file(tmp_path, BOTH), "refuse", ("Baar",))
 
 
 def test_parts_are_of_a_mesh_alone():
@@ -156,17 +156,17 @@ def test_parts_are_of_a_mesh_alone():
 
 def test_other_elements_are_refused_unless_parts_are_chosen(tmp_path):
     beams = "*ELEMENT_BEAM\n       1       5     101     103\n"
-    file = written(tmp_path, BOTH + beams)
+    file = write_file(tmp_path, BOTH + beams)
     with pytest.raises(SceneError, match=r"no other elements than solids.*1 \*ELEMENT_BEAM"):
         read(file)
     assert len(read(file, "refuse", (3,)).corner) == 1
     shell = "*ELEMENT_SHELL\n       1       5     101     103     105     107\n"
-    notes = read(written(tmp_path, BOTH + shell, "shell.k")).notes
+    notes = read(write_file(tmp_path, BOTH + shell, "shell.k")).notes
     assert any("1 quad lie on faces of its solids: they name nodes" in note for note in notes)
     apart = shell.replace("     107", "     201") + "*NODE\n     201    5.0 5.0 5.0\n"
     apart = apart.replace("    5.0 5.0 5.0", f"{5.0:16.3f}{5.0:16.3f}{5.0:16.3f}")
     with pytest.raises(SceneError, match="must have no shells or beams"):
-        read(written(tmp_path, BOTH + apart, "apart.k"))
+        read(write_file(tmp_path, BOTH + apart, "apart.k"))
 
 
 def test_what_is_not_read_is_listed_with_its_count(tmp_path):
@@ -174,38 +174,38 @@ def test_what_is_not_read_is_listed_with_its_count(tmp_path):
     head = f"{101:8d}" + f"{0.0:16.8f}" * 3
     text = text.replace(head, head + f"{7:8d}{0:8d}", 1)
     text += "*MAT_ELASTIC\n1,2\n*BOUNDARY_SPC_NODE\n1\n*MAT_ELASTIC\n2,2\n*PART_CONTACT\nx\n1\n"
-    notes = " ".join(read(written(tmp_path, text)).notes)
+    notes = " ".join(read(write_file(tmp_path, text)).notes)
     assert "not read: 1 *BOUNDARY_SPC_NODE, 2 *MAT_ELASTIC, 1 *PART_CONTACT." in notes
     assert "1 nodes have constraints TC or RC" in notes
 
 
-def moving(tmp_path, text, **keys):
-    return built(written(tmp_path, BOTH + SETS + text), **keys).state.velocity
+def initial_velocity(tmp_path, text, **keys):
+    return plate_of(write_file(tmp_path, BOTH + SETS + text), **keys).state.velocity
 
 
 def test_all_nodes_move_but_those_of_a_second_set(tmp_path):
     text = f"*INITIAL_VELOCITY\n         0         5\n{2.0:10.1f}\n{3.0:10.1f}\n"
     text += f"*INITIAL_VELOCITY_NODE\n{101:10d}{0.0:10.1f}{4.0:10.1f}\n"
-    velocity = moving(tmp_path, text, time_scale=1e-3)  # mm and ms
+    velocity = initial_velocity(tmp_path, text, time_scale=1e-3)  # mm and ms
     assert velocity[8:].tolist() == [[2.0, 0.0, 0.0]] * 8
     assert velocity[1:4].tolist() == [[3.0, 0.0, 0.0]] * 3
     assert velocity[0].tolist() == [0.0, 4.0, 0.0]
 
 
 @pytest.mark.parametrize(
-    ("chosen", "rows"),
+    ("selection", "rows"),
     [("4,2", range(8, 16)), ("1,1", range(16)), ("5,3", range(4)), ("0,2", range(16))],
 )
-def test_generated_velocities_are_of_parts_or_sets(tmp_path, chosen, rows):
-    text = f"*INITIAL_VELOCITY_GENERATION\n{chosen},,1.,,\n0.,\n"
-    velocity = moving(tmp_path, text, scale=1.0)
+def test_generated_velocities_are_of_parts_or_sets(tmp_path, selection, rows):
+    text = f"*INITIAL_VELOCITY_GENERATION\n{selection},,1.,,\n0.,\n"
+    velocity = initial_velocity(tmp_path, text, scale=1.0)
     assert np.flatnonzero(velocity.any(axis=1)).tolist() == list(rows)
     assert velocity[rows[0]].tolist() == [1.0, 0.0, 0.0]
 
 
 def test_generated_velocities_turn_about_an_axis(tmp_path):
     text = "*INITIAL_VELOCITY_GENERATION\n3,2,2.,1.,,\n10.,0.,0.,0.,0.,5.\n"
-    velocity = moving(tmp_path, text, scale=1.0)
+    velocity = initial_velocity(tmp_path, text, scale=1.0)
     places = np.array(PLACES[:8])
     expected = [(1.0 - 2.0 * y, 2.0 * (x - 10.0), 0.0) for x, y, _ in places]
     assert velocity[:8].tolist() == [list(v) for v in expected]
@@ -213,18 +213,18 @@ def test_generated_velocities_turn_about_an_axis(tmp_path):
 
 
 def test_the_scene_may_replace_velocities_of_the_file(tmp_path):
-    file = written(tmp_path, BOTH + "*INITIAL_VELOCITY\n0\n1.,\n")
-    plate = built(file, scale=1.0)
+    file = write_file(tmp_path, BOTH + "*INITIAL_VELOCITY\n0\n1.,\n")
+    plate = plate_of(file, scale=1.0)
     assert plate.state.velocity.tolist() == [[1.0, 0.0, 0.0]] * 16
     assert any("velocities of 16 nodes are the file's, up to 1 m/s" in n for n in plate.notes())
-    plate = built(file, velocity=(0.0, 0.0, 0.0))
+    plate = plate_of(file, velocity=(0.0, 0.0, 0.0))
     assert not plate.state.velocity.any()
     assert any("velocities of 16 nodes are not used, for the scene" in n for n in plate.notes())
 
 
-def bad(place, found, text=BOTH):
-    assert place in text
-    return text.replace(place, found, 1)
+def bad(old, new, text=BOTH):
+    assert old in text
+    return text.replace(old, new, 1)
 
 
 LINE = f"{7:8d}{3:8d}" + "".join(f"{n:8d}" for n in FIRST)
@@ -296,7 +296,7 @@ DEFECTS = {
 
 @pytest.mark.parametrize(("line", "kind"), [(TET, "tetra"), (TEN_NODES, "tetra10")])
 def test_tetrahedra_beside_hexahedra_are_refused_unless_parts_are_chosen(line, kind, tmp_path):
-    file = written(tmp_path, bad(LINE, line))
+    file = write_file(tmp_path, bad(LINE, line))
     with pytest.raises(SceneError, match=f"no other solids than hex.*found 1 {kind} beside 1 hexa"):
         read(file)
     assert read(file, parts=("Foot, new",)).corner.shape == (1, 8)
@@ -306,14 +306,14 @@ def test_tetrahedra_beside_hexahedra_are_refused_unless_parts_are_chosen(line, k
 @pytest.mark.parametrize(("text", "reason"), DEFECTS.values(), ids=DEFECTS)
 def test_defects_are_named_with_their_line(tmp_path, text, reason):
     with pytest.raises(SceneError, match=f"file two.k, {reason}"):
-        read(written(tmp_path, text))
+        read(write_file(tmp_path, text))
 
 
 def test_degenerate_solids_of_parts_that_are_not_chosen_are_left_out(tmp_path):
-    mesh = read(written(tmp_path, bad(LINE, TET)), "refuse", (4,))
+    mesh = read(write_file(tmp_path, bad(LINE, TET)), "refuse", (4,))
     assert len(mesh.corner) == 1
 
 
 def test_a_file_without_solids_is_refused(tmp_path):
     with pytest.raises(SceneError, match=r"must have elements of kind hexahedron, .*; found none"):
-        read(written(tmp_path, f"*KEYWORD\n*NODE\n{nodes()}"))
+        read(write_file(tmp_path, f"*KEYWORD\n*NODE\n{nodes()}"))

@@ -20,17 +20,17 @@ CUBE = np.array(
 ONE = np.arange(8)[None]
 
 
-def write(tmp_path, node, cells, name="block.vtk", **given):
-    meshio.Mesh(node, cells, **given).write(tmp_path / name)
+def write(tmp_path, node, cells, name="block.vtk", **keys):
+    meshio.Mesh(node, cells, **keys).write(tmp_path / name)
     return str(tmp_path / name)
 
 
-def meshed(file, **keys):
+def part_of_file(file, **keys):
     return Part(shape="mesh", file=file, material="steel", **keys)
 
 
 def count(file, **keys):
-    return meshed(file, **keys).count
+    return part_of_file(file, **keys).count
 
 
 @pytest.mark.parametrize(
@@ -64,16 +64,16 @@ def test_shells_and_beams_beside_solids_are_refused(tmp_path):
 
 def test_faces_that_mark_solids_are_left_out_with_a_note(tmp_path):
     file = write(tmp_path, CUBE, [("hexahedron", ONE), ("quad", ONE[:, :4])])
-    made = FePlate(FePlateParams(parts=(meshed(file),)))
-    assert any("1 quad lie on faces of its solids" in note for note in made.notes())
+    structure = FePlate(FePlateParams(parts=(part_of_file(file),)))
+    assert any("1 quad lie on faces of its solids" in note for note in structure.notes())
 
 
 def test_all_blocks_of_solids_are_read(tmp_path):
     node = np.concatenate([CUBE, CUBE + np.array([5.0, 0.0, 0.0]), CUBE - 5.0])
     cells = [("hexahedron", ONE), ("hexahedron", ONE + 8), ("hexahedron", ONE + 16)]
-    found = meshed(write(tmp_path, node, cells, "block.inp")).placed()
-    assert len(found.corner) == 3
-    assert any("3 pieces" in note for note in found.notes)
+    mesh = part_of_file(write(tmp_path, node, cells, "block.inp")).placed()
+    assert len(mesh.corner) == 3
+    assert any("3 pieces" in note for note in mesh.notes)
 
 
 def two_cubes(tmp_path):
@@ -96,7 +96,7 @@ def test_nodes_at_one_place_are_refused_joined_or_left_as_the_scene_says(tmp_pat
 def test_parts_that_touch_are_refused(tmp_path):
     low = {"lowest": (0.0, 0.0, 0.0), "highest": (1.0, 1.0, 1.0), "elements": (2, 2, 2)}
     high = low | {"lowest": (1.0, 0.0, 0.0), "highest": (2.0, 1.0, 1.0)}
-    parts = tuple(Part(**one, material="steel") for one in (low, high))
+    parts = tuple(Part(**box, material="steel") for box in (low, high))
     with pytest.raises(SceneError, match=r"parts must not touch.*9 of their nodes"):
         FePlate(FePlateParams(parts=parts))
 
@@ -113,22 +113,22 @@ def test_elements_that_are_collapsed_or_turned_at_a_corner_are_refused(tmp_path)
 
 def test_badly_shaped_elements_are_noted(tmp_path):
     sheared = CUBE + CUBE[:, 2:] * (10.0, 0.0, 0.0)
-    found = meshed(write(tmp_path, sheared, [("hexahedron", ONE)])).placed()
-    assert any("1 of 1 elements are badly shaped" in note for note in found.notes)
+    mesh = part_of_file(write(tmp_path, sheared, [("hexahedron", ONE)])).placed()
+    assert any("1 of 1 elements are badly shaped" in note for note in mesh.notes)
 
 
 def test_coordinates_that_are_not_finite_are_refused(tmp_path):
-    wrong = CUBE.copy()
-    wrong[3, 1] = np.nan
+    node = CUBE.copy()
+    node[3, 1] = np.nan
     with pytest.raises(SceneError, match="those of 1 nodes are not"):
-        count(write(tmp_path, wrong, [("hexahedron", ONE)]))
+        count(write(tmp_path, node, [("hexahedron", ONE)]))
 
 
 def test_a_mesh_in_millimetres_is_asked_for_its_unit(tmp_path):
     file = write(tmp_path, 20.0 * CUBE, [("hexahedron", ONE)])
-    (note,) = meshed(file).placed().notes
+    (note,) = part_of_file(file).placed().notes
     assert "20 x 20 x 20 m. Is that meant?" in note
-    (note,) = meshed(file, scale=1e-3).placed().notes
+    (note,) = part_of_file(file, scale=1e-3).placed().notes
     assert note.endswith("1 elements, 8 nodes, 0.02 x 0.02 x 0.02 m.")
 
 
@@ -174,8 +174,8 @@ $EndElements
 
 def test_parts_of_gmsh_are_its_physical_groups(tmp_path):
     (tmp_path / "bar.msh").write_text(GMSH)
-    whole, bar = (read(str(tmp_path / "bar.msh"), "refuse", parts) for parts in ((), ("bar",)))
-    for mesh in (whole, bar):
+    all_parts, bar = (read(str(tmp_path / "bar.msh"), "refuse", parts) for parts in ((), ("bar",)))
+    for mesh in (all_parts, bar):
         assert mesh.node.tolist() == CUBE.tolist()
         assert {key: rows.tolist() for key, rows in mesh.groups.items()} == {"bar": [0]}
 
@@ -191,10 +191,10 @@ def test_a_set_that_a_file_names_already_is_refused(tmp_path):
     file = write(
         tmp_path, CUBE, [("hexahedron", ONE)], "a.inp", point_sets={"end": np.array([0, 1])}
     )
-    twice = NodeSet(name="end", lowest=(0.0,) * 3, highest=(0.0, 1.0, 1.0))
-    part = meshed(file)
+    duplicate = NodeSet(name="end", lowest=(0.0,) * 3, highest=(0.0, 1.0, 1.0))
+    part = part_of_file(file)
     with pytest.raises(SceneError, match=r"node_sets\.0: names must differ; end"):
-        FePlate(FePlateParams(parts=(part,), node_sets=(twice,)))
+        FePlate(FePlateParams(parts=(part,), node_sets=(duplicate,)))
 
 
 def test_files_without_cells_are_refused(tmp_path):
@@ -221,13 +221,13 @@ def test_abaqus_files_that_the_reader_would_misread_are_refused(tmp_path, text, 
 
 
 @pytest.mark.parametrize(
-    ("key", "table", "now"),
+    ("key", "table", "new_keys"),
     [
         ("cylinder", {"radius": 0.1, "length": 1.0, "elements": [1, 1, 1]}, "base, top, radius"),
         ("mesh", {"file": "block.inp"}, "file, scale"),
     ],
 )
-def test_old_keys_of_shapes_are_refused_with_the_new_ones(key, table, now):
+def test_old_keys_of_shapes_are_refused_with_the_new_ones(key, table, new_keys):
     part = {key: table, "material": "steel"}
     _, (mistake,) = read_params(FePlateParams, {"parts": [part]}, "bar")
-    assert f'parts.0.{key} is now shape = "{key}", with {now}' in mistake
+    assert f'parts.0.{key} is now shape = "{key}", with {new_keys}' in mistake

@@ -19,19 +19,19 @@ def structure(size, elements, fixed, poissons_ratio):
     return FePlate(FePlateParams(parts=(part,), fixed=fixed, integration="full", **CALM))
 
 
-def frequencies(made, count, moved=1e-9):
+def frequencies(plate, count, displacement=1e-9):
     """Lowest frequencies [Hz] of a structure: of M⁻¹K, with K found column by column."""
-    free = np.flatnonzero(made.model.free.ravel() > 0.0)
-    root = np.repeat(np.sqrt(made.model.inverse_mass), 3)[free]
-    state, dt = made.save(), 1e-12
+    free = np.flatnonzero(plate.model.free.ravel() > 0.0)
+    root = np.repeat(np.sqrt(plate.model.inverse_mass), 3)[free]
+    state, dt = plate.save(), 1e-12
     stiffness = np.empty((len(free), len(free)))
-    for column, one in enumerate(free):
-        made.load(state)
-        made.state.velocity.ravel()[one] = moved / dt
-        made.state.internal[:] = 0.0
-        made.step(dt)
-        stiffness[:, column] = -made.state.internal.ravel()[free] / moved
-    made.load(state)
+    for column, degree in enumerate(free):
+        plate.load(state)
+        plate.state.velocity.ravel()[degree] = displacement / dt
+        plate.state.internal[:] = 0.0
+        plate.step(dt)
+        stiffness[:, column] = -plate.state.internal.ravel()[free] / displacement
+    plate.load(state)
     assert np.abs(stiffness - stiffness.T).max() < 1e-6 * np.abs(stiffness).max()
     squares = np.linalg.eigvalsh(root[:, None] * 0.5 * (stiffness + stiffness.T) * root)
     return np.sqrt(squares[:count]) / (2.0 * np.pi)
@@ -70,7 +70,7 @@ def test_a_simply_supported_plate_has_its_first_three_frequencies():
         Fixed(lowest=(*low, 0.0), highest=(*high, h), directions=(along, "z"))
         for low, high, along in sides
     )
-    found = frequencies(structure((a, a, h), (12, 12, 1), fixed, 0.3), 3)
+    lowest = frequencies(structure((a, a, h), (12, 12, 1), fixed, 0.3), 3)
     rigidity = E * h**3 / 12.0 / (1.0 - 0.3**2)
     thin = 0.5 * np.pi * np.sqrt(rigidity / (RHO * h)) / a**2 * np.array([2.0, 5.0, 5.0])
-    assert found == pytest.approx(thin, rel=0.01)
+    assert lowest == pytest.approx(thin, rel=0.01)

@@ -13,7 +13,7 @@ INTEGRATIONS = pytest.mark.parametrize("integration", ["reduced", "full"])
 EVERYWHERE = Faces(lowest=(-9.0, -9.0, -9.0), highest=(9.0, 9.0, 9.0))
 
 
-def slab(dimensions, **given):
+def slab(dimensions, **keys):
     part = Part(
         lowest=(0.0, 0.0, 0.0),
         highest=(0.04, 1.0, 0.02),
@@ -21,38 +21,40 @@ def slab(dimensions, **given):
         material="steel",
         velocity=(5.0, 0.0, -60.0),
     )
-    return FePlate(FePlateParams(parts=(part,), dimensions=dimensions, **given))
+    return FePlate(FePlateParams(parts=(part,), dimensions=dimensions, **keys))
 
 
 @INTEGRATIONS
 def test_it_moves_as_a_slab_that_is_held_along_y(integration):
     """To rounding; eight points have axes that begin with another edge of the deformed element."""
-    close = 1e-9 if integration == "reduced" else 3e-3
+    tolerance = 1e-9 if integration == "reduced" else 3e-3
     wall = RigidWall(point=(0.0, 0.0, 0.0), normal=(0.0, 0.0, 1.0))
-    held = Fixed(lowest=(-9.0, -9.0, -9.0), highest=(9.0, 9.0, 9.0), directions=("y",))
-    given = {"rigid_walls": (wall,), "integration": integration, "gravity": (0.0, 0.0, -9.81)}
-    flat, solid = slab(2, **given), slab(3, fixed=(held,), **given)
+    clamp = Fixed(lowest=(-9.0, -9.0, -9.0), highest=(9.0, 9.0, 9.0), directions=("y",))
+    keys = {"rigid_walls": (wall,), "integration": integration, "gravity": (0.0, 0.0, -9.81)}
+    flat, solid = slab(2, **keys), slab(3, fixed=(clamp,), **keys)
     for _ in range(150):
         dt = min(flat.stable_dt(), solid.stable_dt())
         flat.step(dt)
         solid.step(dt)
     front = solid.mesh.node[:, 1] == 0.0
-    moved = flat.state.position - flat.mesh.node
+    displacement = flat.state.position - flat.mesh.node
     np.testing.assert_allclose(
-        moved, (solid.state.position - solid.mesh.node)[front], atol=close * np.abs(moved).max()
+        displacement,
+        (solid.state.position - solid.mesh.node)[front],
+        atol=tolerance * np.abs(displacement).max(),
     )
-    mine, its = flat.totals(), solid.totals()
-    assert mine.mass == pytest.approx(7850.0 * 0.04 * 0.02)
-    assert mine.kinetic == pytest.approx(its.kinetic, rel=close)
-    assert mine.internal == pytest.approx(its.internal, rel=close)
+    flat_totals, solid_totals = flat.totals(), solid.totals()
+    assert flat_totals.mass == pytest.approx(7850.0 * 0.04 * 0.02)
+    assert flat_totals.kinetic == pytest.approx(solid_totals.kinetic, rel=tolerance)
+    assert flat_totals.internal == pytest.approx(solid_totals.internal, rel=tolerance)
 
 
 def test_edges_go_round_with_the_inside_on_their_left():
-    made = slab(2)
-    edge = made.describe()["faces.corner"].astype(int)
+    structure = slab(2)
+    edge = structure.describe()["faces.corner"].astype(int)
     assert len(edge) == 24 and (edge[:, 2:] == -1).all()
-    assert made.describe()["faces.dimensions"] == [2.0]
-    start = made.describe()["faces.start"]
+    assert structure.describe()["faces.dimensions"] == [2.0]
+    start = structure.describe()["faces.start"]
     assert (start[:, 1] == 0.0).all()
     first, last = start[edge[:, 0]], start[edge[:, 1]]
     area = 0.5 * (first[:, 0] * last[:, 2] - last[:, 0] * first[:, 2]).sum()
@@ -61,9 +63,9 @@ def test_edges_go_round_with_the_inside_on_their_left():
 
 def test_a_pressure_pushes_inwards_with_its_edges_length():
     top = Faces(lowest=(-1.0, -1.0, 0.02), highest=(1.0, 1.0, 0.02))
-    made = slab(2, pressures=(Pressure(faces=top, pressure=1e5),))
-    made.step(1e-9)
-    np.testing.assert_allclose(made.state.load.sum(axis=0), [0.0, 0.0, -1e5 * 0.04], atol=1e-9)
+    structure = slab(2, pressures=(Pressure(faces=top, pressure=1e5),))
+    structure.step(1e-9)
+    np.testing.assert_allclose(structure.state.load.sum(axis=0), [0.0, 0.0, -1e5 * 0.04], atol=1e-9)
     even = slab(2, pressures=(Pressure(faces=EVERYWHERE, pressure=1e5),))
     even.step(1e-9)
     assert np.abs(even.state.load.sum(axis=0)).max() < 1e-8
@@ -82,7 +84,7 @@ def test_a_strip_under_pressure_bends_as_plane_strain_has_it(integration):
     )
     ends = tuple(Fixed(lowest=(x, 0.0, 0.0), highest=(x, 0.0, height)) for x in (0.0, length))
     top = Faces(lowest=(0.0, 0.0, height), highest=(length, 0.0, height))
-    made = FePlate(
+    structure = FePlate(
         FePlateParams(
             parts=(part,),
             fixed=ends,
@@ -94,15 +96,17 @@ def test_a_strip_under_pressure_bends_as_plane_strain_has_it(integration):
             viscosity_quadratic=0.0,
         )
     )
-    dt = made.stable_dt()
+    dt = structure.stable_dt()
     for _ in range(round(0.0035 / dt)):
-        made.step(dt)
-    middle = np.flatnonzero(np.abs(made.mesh.node[:, 0] - 0.5 * length) < 1e-9)
-    moved = (made.state.position - made.mesh.node)[middle, 2].mean()
+        structure.step(dt)
+    middle = np.flatnonzero(np.abs(structure.mesh.node[:, 0] - 0.5 * length) < 1e-9)
+    deflection = (structure.state.position - structure.mesh.node)[middle, 2].mean()
     rigidity = 7e10 * height**3 / 12.0 / (1.0 - 0.3**2)
     shear = 7e10 / 2.6
-    bent = load * length**4 / 384.0 / rigidity
-    assert moved == pytest.approx(-bent - load * length**2 * 1.2 / 8.0 / shear / height, rel=0.02)
+    bending = load * length**4 / 384.0 / rigidity
+    assert deflection == pytest.approx(
+        -bending - load * length**2 * 1.2 / 8.0 / shear / height, rel=0.02
+    )
 
 
 def test_a_part_that_is_no_slab_is_refused():
@@ -125,6 +129,6 @@ def test_cylinders_and_meshes_of_files_are_refused(tmp_path):
         material="steel",
     )
     meshed = Part(shape="mesh", file=str(file), material="steel")
-    for part, said in ((round_bar, "cylinder"), (meshed, "mesh of 8-node solids")):
-        with pytest.raises(ValueError, match=f"it must be a box, .* found a {said}, which has"):
+    for part, kind in ((round_bar, "cylinder"), (meshed, "mesh of 8-node solids")):
+        with pytest.raises(ValueError, match=f"it must be a box, .* found a {kind}, which has"):
             FePlateParams(parts=(part,), dimensions=2)

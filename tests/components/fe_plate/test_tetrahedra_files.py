@@ -4,7 +4,7 @@ from importlib.resources import files
 
 import numpy as np
 import pytest
-from tetrahedra import box, regular, written
+from tetrahedra import box, regular, write_mesh
 
 from quintet.components.fe_plate.component import FePlate
 from quintet.components.fe_plate.heat.params import ConductingPart
@@ -32,7 +32,7 @@ PLACES = np.concatenate([CORNERS, CORNERS[EDGES].mean(axis=1) + BENT])
 GMSH = [0, 1, 2, 3, 4, 5, 6, 7, 9, 8]  # Gmsh's last two stand in the middles of 23 and 13
 
 
-def listed(places):
+def node_lines(places):
     rows = enumerate(places.tolist(), 1)
     return "".join(f"{k}, {x!r}, {y!r}, {z!r}\n" for k, (x, y, z) in rows)
 
@@ -47,7 +47,7 @@ def gmsh(places):
 
 
 def abaqus(places, kind="C3D10", numbers=range(1, 11)):
-    nodes = listed(places)
+    nodes = node_lines(places)
     corners = ", ".join(str(k) for k in numbers)
     return f"*NODE\n{nodes}*ELEMENT, TYPE={kind}\n1, {corners}\n"
 
@@ -62,15 +62,15 @@ def nastran(places):
 
 
 def ls_dyna(places):
-    nodes = listed(places)
+    nodes = node_lines(places)
     numbers = "".join(f"{k:8d}" for k in range(1, 11))
     return f"*KEYWORD\n*NODE\n{nodes}*ELEMENT_SOLID\n{1:8d}{1:8d}\n{numbers}\n*END\n"
 
 
 def volume(places):
     """∫ det J of an element by Gauss's rule in a cube that is collapsed to it."""
-    at, weights = np.polynomial.legendre.leggauss(4)
-    u, v, w = (0.5 * (1.0 + x.ravel()) for x in np.meshgrid(at, at, at))
+    points, weights = np.polynomial.legendre.leggauss(4)
+    u, v, w = (0.5 * (1.0 + x.ravel()) for x in np.meshgrid(points, points, points))
     first = np.array([(1 - u), u * (1 - v), u * v * (1 - w), u * v * w]).T
     weight = np.einsum("i,j,k->ijk", weights, weights, weights).ravel() / 8.0 * u * u * v
     return float(jacobians(places, np.arange(10)[None], first)[0] @ weight)
@@ -79,28 +79,28 @@ def volume(places):
 FORMATS = {"a.msh": gmsh, "a.inp": abaqus, "a.bdf": nastran, "a.k": ls_dyna}
 
 
-def saved(folder, name, text):
+def write_file(folder, name, text):
     (folder / name).write_text(text)
     return str(folder / name)
 
 
 @pytest.mark.parametrize("name", FORMATS)
 def test_each_format_numbers_the_nodes_in_its_own_order(name, tmp_path):
-    loaded = read(saved(tmp_path, name, FORMATS[name](PLACES)))
-    np.testing.assert_allclose(loaded.node[loaded.corner[0]], PLACES, atol=5e-5)
-    found = point_volumes(loaded.node, loaded.corner).sum()
-    assert found == pytest.approx(volume(PLACES), rel=1e-3) and abs(found - 0.5) > 0.02
+    mesh = read(write_file(tmp_path, name, FORMATS[name](PLACES)))
+    np.testing.assert_allclose(mesh.node[mesh.corner[0]], PLACES, atol=5e-5)
+    mesh_volume = point_volumes(mesh.node, mesh.corner).sum()
+    assert mesh_volume == pytest.approx(volume(PLACES), rel=1e-3) and abs(mesh_volume - 0.5) > 0.02
 
 
 def test_a_straight_element_has_its_volume(tmp_path):
     straight = np.concatenate([CORNERS, CORNERS[EDGES].mean(axis=1)])
-    for name, text in FORMATS.items():
-        loaded = read(saved(tmp_path, name, text(straight)))
-        assert point_volumes(loaded.node, loaded.corner).sum() == pytest.approx(0.5, rel=1e-12)
+    for name, to_text in FORMATS.items():
+        mesh = read(write_file(tmp_path, name, to_text(straight)))
+        assert point_volumes(mesh.node, mesh.corner).sum() == pytest.approx(0.5, rel=1e-12)
 
 
 def test_nodes_out_of_order_are_refused(tmp_path):
-    file = saved(tmp_path, "a.inp", abaqus(PLACES, numbers=[1 + k for k in GMSH]))
+    file = write_file(tmp_path, "a.inp", abaqus(PLACES, numbers=[1 + k for k in GMSH]))
     with pytest.raises(
         SceneError,
         match=r"midside node must .* found node 9 of element 0 .*order",
@@ -111,20 +111,22 @@ def test_nodes_out_of_order_are_refused(tmp_path):
 def test_elements_inside_out_collapsed_or_too_curved_are_refused(tmp_path):
     turned = PLACES * np.array([1.0, 1.0, -1.0])
     with pytest.raises(SceneError, match=r"Jacobian above 0 at its corners; found -3.*Turn their"):
-        Part(shape="mesh", file=saved(tmp_path, "a.inp", abaqus(turned)), material=ELASTIC).placed()
-    file = saved(tmp_path, "b.inp", abaqus(PLACES, numbers=[*range(1, 10), 9]))
+        Part(
+            shape="mesh", file=write_file(tmp_path, "a.inp", abaqus(turned)), material=ELASTIC
+        ).placed()
+    file = write_file(tmp_path, "b.inp", abaqus(PLACES, numbers=[*range(1, 10), 9]))
     with pytest.raises(SceneError, match=r"must have 10 different nodes; 1 of 1 have not"):
         Part(shape="mesh", file=file, material=ELASTIC).placed()
     curved = PLACES.copy()
     curved[4:7, 2] += (0.45, 0.4, 0.38)  # the face 012 bulges to the corner 3
-    file = saved(tmp_path, "c.inp", abaqus(curved))
+    file = write_file(tmp_path, "c.inp", abaqus(curved))
     with pytest.raises(SceneError, match="so curved it is; found -"):
         Part(shape="mesh", file=file, material=ELASTIC).placed()
 
 
 def test_a_flat_element_is_noted(tmp_path):
     flat = np.concatenate([CORNERS, CORNERS[EDGES].mean(axis=1)]) * np.array([1.0, 1.0, 0.02])
-    file = saved(tmp_path, "a.inp", abaqus(flat))
+    file = write_file(tmp_path, "a.inp", abaqus(flat))
     notes = Part(shape="mesh", file=file, material=ELASTIC).placed().notes
     assert any("1 of 1 elements are badly shaped" in note for note in notes)
 
@@ -133,20 +135,20 @@ def test_four_nodes_are_raised_to_ten_with_a_note(tmp_path):
     node, corner = box((2, 1, 1))
     used = np.unique(corner[:, :4])
     clamp = used[node[used, 0] < 1e-9]
-    file = written(
+    file = write_mesh(
         tmp_path / "a.inp", node[: used.max() + 1], corner[:, :4], "tetra",
         point_sets={"clamp": clamp},
     )  # fmt: skip
-    loaded = read(file)
-    assert len(loaded.node) == len(node) and loaded.corner.shape == corner.shape
+    mesh = read(file)
+    assert len(mesh.node) == len(node) and mesh.corner.shape == corner.shape
     np.testing.assert_allclose(
-        loaded.node[loaded.corner[:, 4:]], loaded.node[loaded.corner[:, EDGES]].mean(axis=2)
+        mesh.node[mesh.corner[:, 4:]], mesh.node[mesh.corner[:, EDGES]].mean(axis=2)
     )
     new = len(node) - used.max() - 1
-    assert any(f"12 tetrahedra of four nodes got {new} more" in note for note in loaded.notes)
-    assert len(loaded.sets["clamp"]) == (node[:, 0] < 1e-9).sum() == 9
-    made = FePlate(FePlateParams(parts=(Part(shape="mesh", file=file, material=ELASTIC),)))
-    assert made.built.volume.sum() == pytest.approx(1.0, rel=1e-12)
+    assert any(f"12 tetrahedra of four nodes got {new} more" in note for note in mesh.notes)
+    assert len(mesh.sets["clamp"]) == (node[:, 0] < 1e-9).sum() == 9
+    plate = FePlate(FePlateParams(parts=(Part(shape="mesh", file=file, material=ELASTIC),)))
+    assert plate.built.volume.sum() == pytest.approx(1.0, rel=1e-12)
 
 
 TET4 = "       1       1       1       2       3       4       4       4       4       4\n"
@@ -157,68 +159,70 @@ TEN = "       1       1\n" + "".join(f"{k:8d}" for k in (1, 2, 3, *[4] * 7)) + "
 @pytest.mark.parametrize("line", [TET4, OLD, TEN])
 @pytest.mark.parametrize("keyword", ["*ELEMENT_SOLID", "*ELEMENT_SOLID_TET4TOTET10"])
 def test_four_nodes_of_ls_dyna_are_raised_and_have_velocities(line, keyword, tmp_path):
-    nodes = listed(CORNERS)
+    nodes = node_lines(CORNERS)
     text = f"*KEYWORD\n*NODE\n{nodes}{keyword}\n{line}*INITIAL_VELOCITY_NODE\n1,0.,0.,4.\n*END\n"
-    loaded = read(saved(tmp_path, "a.k", text))
-    assert loaded.corner.shape == (1, 10)
-    np.testing.assert_allclose(loaded.velocity[loaded.corner[0], 2], [4, 0, 0, 0, 2, 0, 2, 2, 0, 0])
-    assert point_volumes(loaded.node, loaded.corner).sum() == pytest.approx(0.5, rel=1e-12)
+    mesh = read(write_file(tmp_path, "a.k", text))
+    assert mesh.corner.shape == (1, 10)
+    np.testing.assert_allclose(mesh.velocity[mesh.corner[0], 2], [4, 0, 0, 0, 2, 0, 2, 2, 0, 0])
+    assert point_volumes(mesh.node, mesh.corner).sum() == pytest.approx(0.5, rel=1e-12)
 
 
 def test_sets_of_faces_name_their_nodes():
     """As the physical surfaces of Gmsh do."""
-    loaded = read(str(CANTILEVER / "coarse.msh"))
-    assert set(loaded.sets) == {"clamp", "end"} and set(loaded.groups) == {"beam"}
+    mesh = read(str(CANTILEVER / "coarse.msh"))
+    assert set(mesh.sets) == {"clamp", "end"} and set(mesh.groups) == {"beam"}
     for name, place in (("clamp", 0.0), ("end", 0.1)):
-        at = np.flatnonzero(np.isclose(loaded.node[:, 0], place))
-        assert np.array_equal(loaded.sets[name], at) and len(at) == 13
-    assert any("its set clamp of faces or edges names the 13 nodes" in n for n in loaded.notes)
+        nodes = np.flatnonzero(np.isclose(mesh.node[:, 0], place))
+        assert np.array_equal(mesh.sets[name], nodes) and len(nodes) == 13
+    assert any("its set clamp of faces or edges names the 13 nodes" in n for n in mesh.notes)
 
 
-def of_four_nodes(folder):
+def first_order_mesh(folder):
     """The cantilever's mesh with elements of the first order."""
-    lines, fewer, left = [], {"8": (1, 2), "9": (2, 3), "11": (4, 4), "15": (15, 1)}, 0
+    lines, lower_order, remaining = [], {"8": (1, 2), "9": (2, 3), "11": (4, 4), "15": (15, 1)}, 0
     nodes = 0
     text = (CANTILEVER / "coarse.msh").read_text()
     before, after = text.split("$Elements\n")
     head, *rows = after.splitlines()
     for row in rows:
         words = row.split()
-        if left:
+        if remaining:
             lines.append(" ".join(words[: 1 + nodes]))
-            left -= 1
+            remaining -= 1
         elif row.startswith("$"):
             lines.append(row)
         else:
-            kind, nodes = fewer[words[2]]
+            kind, nodes = lower_order[words[2]]
             lines.append(f"{words[0]} {words[1]} {kind} {words[3]}")
-            left = int(words[3])
-    return saved(folder, "four.msh", before + "\n".join(["$Elements", head, *lines, ""]))
+            remaining = int(words[3])
+    return write_file(folder, "four.msh", before + "\n".join(["$Elements", head, *lines, ""]))
 
 
 def test_sets_of_faces_of_four_nodes_have_their_midside_nodes(tmp_path):
-    loaded, whole = read(of_four_nodes(tmp_path)), read(str(CANTILEVER / "coarse.msh"))
-    assert len(loaded.node) == len(whole.node)
+    mesh, second_order = read(first_order_mesh(tmp_path)), read(str(CANTILEVER / "coarse.msh"))
+    assert len(mesh.node) == len(second_order.node)
     for name, place in (("clamp", 0.0), ("end", 0.1)):
-        at = np.flatnonzero(np.isclose(loaded.node[:, 0], place))
-        assert np.array_equal(loaded.sets[name], at) and len(at) == 13 == len(whole.sets[name])
+        nodes = np.flatnonzero(np.isclose(mesh.node[:, 0], place))
+        assert np.array_equal(mesh.sets[name], nodes) and len(nodes) == 13 == len(
+            second_order.sets[name]
+        )
 
 
 @pytest.mark.parametrize("order", [1, 2])
 def test_chosen_parts_keep_the_sets_of_faces_on_them(order, tmp_path):
-    file = of_four_nodes(tmp_path) if order == 1 else str(CANTILEVER / "coarse.msh")
-    loaded = read(file, parts=("beam",))
-    assert {name: len(nodes) for name, nodes in loaded.sets.items()} == {"clamp": 13, "end": 13}
+    file = first_order_mesh(tmp_path) if order == 1 else str(CANTILEVER / "coarse.msh")
+    mesh = read(file, parts=("beam",))
+    assert {name: len(nodes) for name, nodes in mesh.sets.items()} == {"clamp": 13, "end": 13}
 
 
 def test_physical_names_of_gmsh_2_are_sets(tmp_path):
     names = '$PhysicalNames\n2\n2 1 "clamp"\n3 1 "beam"\n$EndPhysicalNames\n$Nodes'
     text = gmsh(PLACES).replace("$Nodes", names, 1)
     text = text.replace("$Elements\n1\n", "$Elements\n2\n2 9 2 1 1 1 2 3 5 6 7\n")
-    loaded = read(saved(tmp_path, "a.msh", text))
-    assert loaded.groups["beam"].tolist() == [0]
+    mesh = read(write_file(tmp_path, "a.msh", text))
+    assert mesh.groups["beam"].tolist() == [0]
     np.testing.assert_allclose(
-        np.sort(loaded.node[loaded.sets["clamp"]], axis=0),
+        np.sort(mesh.node[mesh.sets["clamp"]], axis=0),
         np.sort(PLACES[[0, 1, 2, 4, 5, 6]], axis=0),
     )
 
@@ -227,7 +231,7 @@ def test_a_set_of_corners_alone_is_noted(tmp_path):
     node, corner = box((2, 1, 1))
     clamp = np.flatnonzero(node[:, 0] < 1e-9)
     corners = np.intersect1d(clamp, corner[:, :4])
-    file = written(tmp_path / "a.inp", node, corner, point_sets={"c": corners, "all": clamp})
+    file = write_mesh(tmp_path / "a.inp", node, corner, point_sets={"c": corners, "all": clamp})
     notes = [note for note in read(file).notes if "lacks" in note]
     assert len(notes) == 1 and "its set c has all corners of 2 outer faces" in notes[0]
     assert "lacks 5 nodes in the middles" in notes[0]
@@ -265,30 +269,30 @@ def test_what_an_empty_set_needs_is_said():
 
 def test_selections_take_whole_faces_of_six_nodes(tmp_path):
     """Four triangles each: 8 of the end; half of a face is none."""
-    file = written(tmp_path / "a.vtk", *box((2, 1, 1)))
+    file = write_mesh(tmp_path / "a.vtk", *box((2, 1, 1)))
     part = Part(shape="mesh", file=file, material=ELASTIC)
 
     def faces(low, high):
-        chosen = Faces(lowest=low, highest=high)
-        return len(FePlate(FePlateParams(parts=(part,), coupled_faces=(chosen,))).faces)
+        selection = Faces(lowest=low, highest=high)
+        return len(FePlate(FePlateParams(parts=(part,), coupled_faces=(selection,))).faces)
 
     assert faces((0.0, 0.0, 0.0), (0.0, 1.0, 1.0)) == 8
-    everything = faces((0.0, 0.0, 0.0), (1.0, 1.0, 1.0))
-    assert everything == 4 * 2 * 10
+    all_faces = faces((0.0, 0.0, 0.0), (1.0, 1.0, 1.0))
+    assert all_faces == 4 * 2 * 10
     assert faces((0.0, 0.0, 0.0), (0.0, 1.0, 1.0)) == faces((0.0, 0.0, 0.0), (0.24, 1.0, 1.0))
 
 
 def test_heat_through_tetrahedra_is_refused(tmp_path):
-    file = written(tmp_path / "a.vtk", *regular())
+    file = write_mesh(tmp_path / "a.vtk", *regular())
     part = ConductingPart(shape="mesh", file=file, conductivity=1.0)
     with pytest.raises(SceneError, match=r"a.vtk must have 8-node solids.*found tetrahedra"):
         part.placed()
 
 
 def test_a_clamp_by_a_box_holds_midside_nodes_too(tmp_path):
-    file = written(tmp_path / "a.vtk", *box((2, 1, 1)))
+    file = write_mesh(tmp_path / "a.vtk", *box((2, 1, 1)))
     part = Part(shape="mesh", file=file, material=ELASTIC)
     fixed = (Fixed(lowest=(0.0, 0.0, 0.0), highest=(0.0, 1.0, 1.0)),)
-    made = FePlate(FePlateParams(parts=(part,), fixed=fixed))
-    assert (made.model.free == 0).all(axis=1).sum() == 9
-    assert len(made.walls()["points"]) == 4
+    plate = FePlate(FePlateParams(parts=(part,), fixed=fixed))
+    assert (plate.model.free == 0).all(axis=1).sum() == 9
+    assert len(plate.walls()["points"]) == 4

@@ -48,7 +48,7 @@ def regular(edge=1.0):
     return np.concatenate([corners, corners[EDGES].mean(axis=1)]), np.arange(10)[None]
 
 
-def written(path, node, corner, kind="tetra10", **more):
-    """Path of a file of a mesh."""
-    meshio.Mesh(node, [(kind, corner)], **more).write(path)
+def write_mesh(path, node, corner, kind="tetra10", **keys):
+    """Write a mesh; return the path of its file."""
+    meshio.Mesh(node, [(kind, corner)], **keys).write(path)
     return str(path)
