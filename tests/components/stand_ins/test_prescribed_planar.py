@@ -1,4 +1,4 @@
-"""Bodies on given paths in two dimensions: what they say of themselves, and mistakes."""
+"""Bodies on given paths in two dimensions: their samples, and mistakes."""
 
 import math
 
@@ -19,20 +19,20 @@ WEDGE = {
 BOX = {"shape": "box", "lowest": [2.0, 0.0, 0.0], "highest": [2.1, 0.1, 0.1]}
 
 
-def told(*bodies):
+def read_bodies(*bodies):
     return read(PrescribedParams, {"bodies": list(bodies)}, "paddle")
 
 
 def test_discs_and_polygons_are_sampled_in_their_plane():
-    params, mistakes = told(DISC_BODY, WEDGE)
+    params, mistakes = read_bodies(DISC_BODY, WEDGE)
     assert not mistakes and prescribed_ports(params)[1] == (PLANAR_MOTION,)
-    asked = {"spacing": 0.02, "depth": 1.0, "inset": 0.01, "mirror": 1.0, "dimensions": 2.0}
-    request = {f"motion.{name}": np.array([value]) for name, value in asked.items()}
-    found = Prescribed(params).sample(request)
-    body, arm = found["motion.body"].astype(int), found["motion.arm"]
-    area = np.bincount(body, found["motion.volume"])
+    settings = {"spacing": 0.02, "depth": 1.0, "inset": 0.01, "mirror": 1.0, "dimensions": 2.0}
+    request = {f"motion.{name}": np.array([value]) for name, value in settings.items()}
+    samples = Prescribed(params).sample(request)
+    body, arm = samples["motion.body"].astype(int), samples["motion.arm"]
+    area = np.bincount(body, samples["motion.volume"])
     np.testing.assert_allclose(area, [math.pi * 0.01, 0.03], rtol=1e-9)
-    assert found["motion.image"].shape == arm.shape
+    assert samples["motion.image"].shape == arm.shape
     wedge = arm[body == 1]  # about its position, a corner, not its centre of mass
     assert wedge[:, 0].min() > 0.0 and wedge[:, 2].min() > 0.0
 
@@ -50,4 +50,4 @@ def test_discs_and_polygons_are_sampled_in_their_plane():
     ],
 )
 def test_mistakes_are_told(bodies, sentence):
-    assert sentence in " ".join(told(*bodies)[1])
+    assert sentence in " ".join(read_bodies(*bodies)[1])
