@@ -1,4 +1,4 @@
-"""Other borders between ranks than they would have: results must be the same."""
+"""Borders between ranks are moved: results must be the same."""
 
 import numpy as np
 from mpi4py import MPI
@@ -9,7 +9,7 @@ from quintet.components.shared.domain.work import Work
 
 
 def move():
-    """Let later ranks, cells or nodes weigh more than they do: all borders move."""
+    """Weigh later ranks, cells or nodes more, so that all borders move."""
     weights, cut = Work.weights, bisection._cut
     bisection._cut = lambda cells, few, count: cut(
         cells * np.linspace(1.0, 2.0, len(cells)), few, count

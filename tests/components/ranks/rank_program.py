@@ -1,8 +1,8 @@
-"""Runs cases of a solver on several MPI ranks; rank 0 writes what came out.
+"""Runs cases of a solver on several MPI ranks; rank 0 writes the results.
 
 Arguments: the module that defines ``Run``, a folder, a number of steps, the number of ranks that
 left the state from which the run goes on (0: it begins at the start), names of cases, and "moved"
-if ranks are to have other borders than they would have. With several numbers of steps, rising, it
+if the borders between ranks are to be moved. With several numbers of steps, rising, it
 writes a state after each, or goes on from each to the next.
 """
 
@@ -20,11 +20,11 @@ WORLD = MPI.COMM_WORLD
 
 def write(path, run, with_failure=False):
     """Write the state and results; `with_failure` ends the run."""
-    reached = run.save() | run.results()
+    results = run.save() | run.results()
     if with_failure:
-        reached["failure"] = np.array(run.failure())
+        results["failure"] = np.array(run.failure())
     if WORLD.rank == 0:
-        np.savez(path, **reached)
+        np.savez(path, **results)
 
 
 def begin(make, name, path=None):
@@ -37,10 +37,10 @@ def begin(make, name, path=None):
 
 def once(make, name, folder, steps, earlier):
     """Take some steps."""
-    path, on = f"{folder}/{name}-{earlier}.npz", f"-{earlier}" * bool(earlier)
+    path, suffix = f"{folder}/{name}-{earlier}.npz", f"-{earlier}" * bool(earlier)
     run = begin(make, name, path if earlier else None)
     run.advance(steps)
-    write(f"{folder}/{name}-{WORLD.size}{on}.npz", run, with_failure=True)
+    write(f"{folder}/{name}-{WORLD.size}{suffix}.npz", run, with_failure=True)
 
 
 def snapshots(make, name, folder, windows):

@@ -1,4 +1,4 @@
-"""Runs of a solver on several MPI ranks for its tests, and what differs between them.
+"""Runs of a solver on several MPI ranks for its tests, and the differences between them.
 
 ``NAME-RANKS.npz`` holds the state and all results of a run from the start, and
 ``NAME-RANKS-EARLIER.npz`` of one that goes on from the state of as many ranks as EARLIER says.
@@ -15,9 +15,11 @@ MOVED = "moved"
 
 def differences(folder, first, second):
     """Names of the arrays that differ in a bit."""
-    one, other = np.load(folder / f"{first}.npz"), np.load(folder / f"{second}.npz")
-    assert set(one.files) == set(other.files)
-    return [name for name in one.files if one[name].tobytes() != other[name].tobytes()]
+    first_run, second_run = np.load(folder / f"{first}.npz"), np.load(folder / f"{second}.npz")
+    assert set(first_run.files) == set(second_run.files)
+    return [
+        name for name in first_run.files if first_run[name].tobytes() != second_run[name].tobytes()
+    ]
 
 
 def from_the_start(program, names, steps, ranks=(1, 2)):
@@ -36,7 +38,7 @@ def from_the_start(program, names, steps, ranks=(1, 2)):
 def from_states(program, names, steps, pairs=((1, 1), (3, 2))):
     """Return a fixture: runs on some ranks that go on from the states of others.
 
-    Three ranks have their borders elsewhere than they would have them.
+    Runs on three ranks have their borders moved.
     """
 
     @pytest.fixture(scope="module")

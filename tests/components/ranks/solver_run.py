@@ -1,4 +1,4 @@
-"""A solver that advances step by step on one MPI rank or several, and all that it tells."""
+"""A solver that advances step by step on one MPI rank or several, and all its outputs."""
 
 from dataclasses import asdict
 
@@ -14,7 +14,7 @@ COMMUNICATOR = WORLD if WORLD.size > 1 else None
 class SolverRun:
     """One case of a solver; a subclass builds it, and gives the inputs of its steps.
 
-    All ranks call the same methods; what comes out is right on rank 0.
+    All ranks call the same methods; the results are right on rank 0.
     """
 
     def __init__(self, name):
@@ -34,7 +34,7 @@ class SolverRun:
         return self.solver.stable_dt()
 
     def failure(self):
-        """What is said of a step that must fail; the solver is of no use afterwards."""
+        """Message of a step that must fail; the solver is of no use afterwards."""
         return ""
 
     def advance(self, steps):
@@ -58,7 +58,7 @@ class SolverRun:
         self.solver.load({name.removeprefix(begin): array for name, array in state.items()})
 
     def results(self):
-        """All that partners, files and pictures get, and what is said."""
+        """All that partners, files and pictures get, and its messages."""
         solver = self.solver
         view = dict(solver.view())
         ranks = view.pop("rank", np.zeros(0))  # differs, as it should
@@ -67,7 +67,7 @@ class SolverRun:
             assert set(ranks) == set(range(WORLD.size))
         totals = asdict(solver.totals())
         masses = totals.pop("mass_balance")
-        warned = {**solver.warnings(), **solver.final_warnings()}
+        warnings = {**solver.warnings(), **solver.final_warnings()}
         return {
             **outputs_of(solver),
             **{f"view {name}": array for name, array in view.items()},
@@ -78,7 +78,7 @@ class SolverRun:
                 for name, total in totals.items()
             },
             **{f"mass {reason}": np.array(mass) for reason, mass in masses.items()},
-            "warned": np.array(sorted(warned.items()), dtype=str),
+            "warned": np.array(sorted(warnings.items()), dtype=str),
             "notes": np.array(solver.notes(), dtype=str),
             "stable step": np.array(solver.stable_dt()),
         }
