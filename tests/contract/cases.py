@@ -1,4 +1,4 @@
-"""The toys that the laws of the contract are tried on, and what each needs to be tried."""
+"""Toys for the laws of the contract, and a case of each."""
 
 import numpy as np
 
@@ -69,7 +69,7 @@ CASES = {  # kind -> case
         {},
         rest={"carried.velocity": ONE},
         scale={"carried.velocity": 1.0},
-        smooth=False,  # a velocity that jumps is a force without end
+        smooth=False,  # a jump of velocity is an infinite force
         forces=("lump.force",),
     ),
     "toy_tubes:Membrane": ConformCase(

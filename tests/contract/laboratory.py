@@ -1,4 +1,4 @@
-"""Running small scenes in this process, and looking at what is left of them."""
+"""Run small scenes in this process, and record their results."""
 
 import itertools
 from collections.abc import Mapping
@@ -28,7 +28,7 @@ HERE = Path(__file__).parent
 
 @dataclass
 class Trace:
-    """What a run gave, window by window, and the coupling that it was made with."""
+    """Results of a run, window by window, and its coupling."""
 
     coupling: Coupling
     judgement: Judgement
@@ -45,14 +45,14 @@ class Trace:
 
     @property
     def times(self) -> Array:
-        """Of these, in s."""
+        """Ends of the windows [s]."""
         return np.array(self.ends)
 
     @property
     def account(self) -> Account:
         """The ledger's account of the only link."""
-        (found,) = self.coupling.ledger.accounts.values()
-        return found
+        (account,) = self.coupling.ledger.accounts.values()
+        return account
 
     def momentum(self) -> Array:
         """Sum of the components' momenta (3,)."""
@@ -61,9 +61,9 @@ class Trace:
     def energy(self) -> float:
         """Sum of the components' energies."""
         totals = [c.totals() for c in self.components.values()]
-        return sum(one.kinetic + one.potential + one.internal for one in totals)
+        return sum(total.kinetic + total.potential + total.internal for total in totals)
 
-    # What a run loop's observer does.
+    # Methods of a run loop's observer.
 
     def plan(self, windows: Windows) -> None:
         pass
@@ -76,7 +76,9 @@ class Trace:
 
     def end_window(self, coupling: Coupling) -> None:
         self.ends.append(coupling.windows.time)
-        self.stable.append({name: one.stable for name, one in coupling.components.items()})
+        self.stable.append(
+            {name: component.stable for name, component in coupling.components.items()}
+        )
         self.outputs.append(dict(coupling.outputs))
         self.energies.append(self.energy())
 
@@ -95,24 +97,24 @@ def scene(folder: Path, components: dict[str, Any], link: Any, **settings: Any) 
     links = link if isinstance(link, list) else [link]
     table = {"name": "toy", "transport": "memory", **settings}
     path = folder / "scene.toml"
-    made = plain({**table, "components": components, "links": links})
-    path.write_text(tomli_w.dumps(made))
+    document = plain({**table, "components": components, "links": links})
+    path.write_text(tomli_w.dumps(document))
     return path
 
 
 def couple(path: Path) -> Trace:
     """Run a scene in this process, all outputs wanted."""
-    checked = load(str(path))
-    exchange = checked.exchange()
+    checked_scene = load(str(path))
+    exchange = checked_scene.exchange()
     watchdog = Watchdog(StopRequest())
-    participants = connect(checked, path.parent, watchdog).participants
-    coupling = assemble(checked.coupling, participants, exchange, Ledger(exchange))
+    participants = connect(checked_scene, path.parent, watchdog).participants
+    coupling = assemble(checked_scene.coupling, participants, exchange, Ledger(exchange))
     judgement = Judgement(coupling.ledger.accounts)
-    components = {name: component_of(one) for name, one in participants.items()}
+    components = {name: component_of(participant) for name, participant in participants.items()}
     trace = Trace(coupling, judgement, components)
-    asked = {name: list(exchange.gives[name]) for name in participants}
+    outputs = {name: list(exchange.gives[name]) for name in participants}
     try:
-        run(coupling, checked.file.end, trace, asked, judgement)
+        run(coupling, checked_scene.file.end, trace, outputs, judgement)
     finally:
         watchdog.close()
     return trace

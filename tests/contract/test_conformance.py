@@ -19,8 +19,8 @@ def test_every_installed_kind_publishes_cases():
 @pytest.mark.parametrize(
     ("kind", "case"),
     [*PUBLISHED, *CASES.items()],
-    ids=lambda one: one if isinstance(one, str) else one.name,
+    ids=lambda parameter: parameter if isinstance(parameter, str) else parameter.name,
 )
 def test_law(kind, case, law, tmp_path):
-    found = try_law(law, Trial(find(kind), case, tmp_path))
-    assert found.status != "failed", found.said
+    outcome = try_law(law, Trial(find(kind), case, tmp_path))
+    assert outcome.status != "failed", outcome.said

@@ -16,21 +16,21 @@ GAP = 1e-4  # m
 REST = {"viscosity_linear": 0.0, "viscosity_quadratic": 0.0}
 
 
-def _block(low, high, **more):
-    body = {"lowest": low, "highest": high, "material": SOFT, "velocity": more.pop("velocity")}
+def _block(low, high, **keys):
+    body = {"lowest": low, "highest": high, "material": SOFT, "velocity": keys.pop("velocity")}
     return {
         "kind": "sph_solid",
         "spacing": SPACING,
         "contact_with_faces": True,
         "bodies": [body],
-        **more,
+        **keys,
     }
 
 
-def _slab(low, high, **more):
+def _slab(low, high, **keys):
     count = [max(1, round((b - a) / SPACING)) for a, b in zip(low, high, strict=True)]
     part = {"lowest": low, "highest": high, "elements": count, "material": SOFT}
-    return {"kind": "fe_plate", "parts": [part], **REST, **more}
+    return {"kind": "fe_plate", "parts": [part], **REST, **keys}
 
 
 def _couple(folder, block, slab, end, order=("block", "slab"), window="auto", **link):
@@ -81,20 +81,20 @@ def test_the_ledger_counts_the_same_work_on_both_sides(tmp_path):
 def test_a_block_slides_to_rest_by_friction(tmp_path):
     mu, gravity, end = 0.3, 1.0, 1.2
     mass_over_stiffness = 3 * 1000.0 * SPACING**3 / (0.5 * 1e5 * SPACING)
-    deep = gravity * mass_over_stiffness  # m, under its own weight
-    low, high = [0.2, 0.2, 0.2 - deep], [0.5, 0.5, 0.5 - deep]
+    depth = gravity * mass_over_stiffness  # m, under its own weight
+    low, high = [0.2, 0.2, 0.2 - depth], [0.5, 0.5, 0.5 - depth]
     block = _block(low, high, velocity=[1.0, 0.0, 0.0], gravity=[0.0, 0.0, -gravity])
-    held = [{"lowest": [0, 0, 0], "highest": [2, 1, 0], "directions": ["x", "y", "z"]}]
-    slab = _slab([0, 0, 0], [1.6, 0.7, 0.2], fixed=held, integration="reduced")
+    clamp = [{"lowest": [0, 0, 0], "highest": [2, 1, 0], "directions": ["x", "y", "z"]}]
+    slab = _slab([0, 0, 0], [1.6, 0.7, 0.2], fixed=clamp, integration="reduced")
     trace = _couple(tmp_path, block, slab, end, friction=mu)
     totals = trace.components["block"].totals()
     speed = totals.momentum / totals.mass
     assert (1.0 - speed[0]) / end == pytest.approx(mu * gravity, rel=0.02)
-    pushed = gravity * end + speed[2]  # of the normal force, over the mass: the block bounces
+    impulse = gravity * end + speed[2]  # of the normal force, over the mass: the block bounces
     # Faces that deform under the block tilt their normals by up to a hundredth.
-    assert 1.0 - speed[0] == pytest.approx(mu * pushed, rel=0.01)
-    lost = 0.5 * totals.mass * (1.0 - speed[0] ** 2)
-    assert totals.dissipated == pytest.approx(lost, rel=0.02)
+    assert 1.0 - speed[0] == pytest.approx(mu * impulse, rel=0.01)
+    dissipated = 0.5 * totals.mass * (1.0 - speed[0] ** 2)
+    assert totals.dissipated == pytest.approx(dissipated, rel=0.02)
 
 
 def test_contact_in_a_plane_keeps_momentum(tmp_path):
@@ -129,8 +129,8 @@ def test_the_window_is_the_predicted_step_once_contact_is_near(tmp_path):
     trace = _impact(tmp_path, end=0.05)
     block, slab = trace.components["block"], trace.components["slab"]
     penalty = block.faces.penalty
-    alone = (2.0 / block.state.bound) ** 2, (2.0 / penalty.step_of_faces) ** 2
-    square = highest_square(alone, (penalty.numbers.points, penalty.numbers.nodes))
+    squares = (2.0 / block.state.bound) ** 2, (2.0 / penalty.step_of_faces) ** 2
+    square = highest_square(squares, (penalty.numbers.points, penalty.numbers.nodes))
     predicted = 0.9 * 2.0 / np.sqrt(square)
     assert block.stable_dt() == pytest.approx(min(predicted, 0.5 * block.state.bound))
     assert np.diff(trace.times)[2:].max() <= min(block.stable_dt(), slab.stable_dt()) * 1.0001
@@ -138,8 +138,9 @@ def test_the_window_is_the_predicted_step_once_contact_is_near(tmp_path):
 
 @pytest.mark.parametrize("stiffness", [1.0, 4.0])
 def test_energy_is_kept_at_the_predicted_step(tmp_path, stiffness):
-    more = {"friction": 0.3, "side": SPEED, "courant": 0.47}  # both sides bear the step of contact
-    trace = _impact(tmp_path, safety=1.0, stiffness=stiffness, **more)
+    # Both sides bear the step of contact.
+    settings = {"friction": 0.3, "side": SPEED, "courant": 0.47}
+    trace = _impact(tmp_path, safety=1.0, stiffness=stiffness, **settings)
     energy = trace.energy() + trace.components["block"].totals().dissipated
     assert energy == pytest.approx(trace.energies[0], rel=0.03)
 
@@ -166,15 +167,15 @@ def test_contact_says_what_is_missing(tmp_path):
     flat = _block([0, 0, 0.6], [0.3, 1.0, 0.9], velocity=[0.0, 0.0, 0.0], dimensions=2)
     with pytest.raises(SceneError, match="two dimensions or both three; block has two, slab has"):
         _couple(tmp_path, flat, slab, 1.0)
-    glued = {"lowest": [0, 0, 0], "highest": [1, 1, 0.7]}
-    hung = _block([0, 0, 0.6], [0.3, 0.3, 0.9], velocity=[0.0, 0.0, 0.0], glued=[glued])
+    selection = {"lowest": [0, 0, 0], "highest": [1, 1, 0.7]}
+    glued_block = _block([0, 0, 0.6], [0.3, 0.3, 0.9], velocity=[0.0, 0.0, 0.0], glued=[selection])
     with pytest.raises(SceneError, match="neither glued nor axisymmetric; found glued particles"):
-        _couple(tmp_path, hung, slab, 1.0)
+        _couple(tmp_path, glued_block, slab, 1.0)
     with pytest.raises(SceneError, match=r"links.0.friction .* found -1"):
         maker("contact")(0, {"kind": "contact", "between": ["a", "b"], "friction": -1.0}, {})
 
 
-def _sphere(height, velocity, **more):
+def _sphere(height, velocity, **keys):
     body = {
         "shape": "sphere", "radius": SPACING, "centre": [0.3, 0.2, height], "density": 1000.0,
         "material": "rubber", "velocity": velocity,
@@ -183,7 +184,7 @@ def _sphere(height, velocity, **more):
     materials = {"rubber": rubber}
     return {
         "kind": "dem_bodies", "bodies": [body], "materials": materials, "contact_with_faces": True,
-        "gravity": [0.0, 0.0, 0.0], **more,
+        "gravity": [0.0, 0.0, 0.0], **keys,
     }  # fmt: skip
 
 
@@ -203,17 +204,17 @@ def test_a_sphere_that_slides_goes_on_to_roll(tmp_path):
     # Friction takes two sevenths of the velocity of a stiff sphere, whatever its coefficient. Of a
     # soft one v0 / (1 + 2/5 R²/L²) is left, with L from its centre to the face.
     weight = 1000.0 * 4.0 / 3.0 * np.pi * SPACING**3
-    pressed = (weight / (4.0 / 3.0 * 0.5e5 * SPACING**0.5)) ** (2.0 / 3.0)  # m, by Hertz
-    sphere = _sphere(0.2 + SPACING - pressed, [0.3, 0.0, 0.0], gravity=[0.0, 0.0, -1.0])
-    held = [{"lowest": [0, 0, 0], "highest": [2, 1, 1], "directions": ["x", "y", "z"]}]
-    slab = _slab([0, 0, 0], [1.2, 0.4, 0.2], fixed=held, integration="reduced")
+    indentation = (weight / (4.0 / 3.0 * 0.5e5 * SPACING**0.5)) ** (2.0 / 3.0)  # m, by Hertz
+    sphere = _sphere(0.2 + SPACING - indentation, [0.3, 0.0, 0.0], gravity=[0.0, 0.0, -1.0])
+    clamp = [{"lowest": [0, 0, 0], "highest": [2, 1, 1], "directions": ["x", "y", "z"]}]
+    slab = _slab([0, 0, 0], [1.2, 0.4, 0.2], fixed=clamp, integration="reduced")
     trace = _couple(tmp_path, sphere, slab, 1.2, friction=0.3)
     speed = trace.history("block", "motion.velocity")[:, 0, 0]
     spin = trace.history("block", "motion.angular_velocity")[:, 0, 1]
-    lever, shear = SPACING - pressed, 0.125 * 1e5  # m; Pa, G* of both
+    lever, shear = SPACING - indentation, 0.125 * 1e5  # m; Pa, G* of both
     # It goes on to rock on its spring; two whole periods are averaged.
-    stiff = 8.0 * shear * (SPACING * pressed) ** 0.5
-    rocking = stiff * (1.0 + 2.5 * (lever / SPACING) ** 2) / weight  # weight: of 1 m/s2
+    stiffness = 8.0 * shear * (SPACING * indentation) ** 0.5
+    rocking = stiffness * (1.0 + 2.5 * (lever / SPACING) ** 2) / weight  # weight: of 1 m/s2
     late = trace.times > 1.2 - 2.0 * 2.0 * np.pi / rocking**0.5
     rolling = 0.3 / (1.0 + 0.4 * (SPACING / lever) ** 2)
     assert speed[late].mean() == pytest.approx(rolling, rel=0.01)

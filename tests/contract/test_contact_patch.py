@@ -1,4 +1,4 @@
-"""Patch test of contact: a flat block presses flat faces alike, on any grid of theirs."""
+"""Patch test of contact: a flat block presses flat faces evenly, on any mesh."""
 
 import laboratory
 import numpy as np
@@ -10,7 +10,7 @@ WIDE, LONG = 12, 20  # spacings
 C = (1e5 * 0.7 / (1.3 * 0.4) / 1000.0) ** 0.5  # m/s, of longitudinal waves
 
 
-def _pressed(folder, across, wide, planar, points):
+def _mean_pressures(folder, across, wide, planar, points):
     """Mean pressures of the elements behind the faces while two equal bars push each other.
 
     Nothing strains sideways, and the pressure is ρ c v/2 everywhere.
@@ -57,7 +57,7 @@ def _pressed(folder, across, wide, planar, points):
     [(12, 12, True, 1), (4, 12, True, 1), (7, 12, True, 3), (5, 12, True, 3), (4, 6, False, 3)],
 )
 def test_every_face_bears_the_same_pressure(tmp_path, across, wide, planar, points):
-    pressure = _pressed(tmp_path, across, wide, planar, points)
+    pressure = _mean_pressures(tmp_path, across, wide, planar, points)
     assert np.abs(pressure / pressure.mean() - 1.0).max() < 0.01
     longitudinal, bulk = 1000.0 * C**2, 1e5 / (3.0 * 0.4)
     exact = bulk / longitudinal * 1000.0 * C * SPEED / 2.0

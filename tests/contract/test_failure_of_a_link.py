@@ -1,4 +1,4 @@
-"""A component that fails because its link is unstable: the fault says that the link is."""
+"""A component fails because its link is unstable: the fault names the unstable link."""
 
 import json
 import shutil
@@ -36,29 +36,29 @@ STIFF = ("components.upper.stiffness=1e6", "components.lower.kind='fragile:Fragi
 
 
 def fault(folder: Path, *settings: str) -> tuple[int, dict]:
-    """Run the masses with a fragile one; return the status and what was told of the fault."""
+    """Run the masses with a fragile one; return the exit status and the report of the fault."""
     source = library()["two_springs"]
     shutil.copytree(source.parent, folder / "springs")
     (folder / "springs" / "fragile.py").write_text(MASSES)
-    asked = [word for one in settings for word in ("--set", one)]
+    options = [word for setting in settings for word in ("--set", setting)]
     scene, out = str(folder / "springs" / "scene.toml"), str(folder / "run")
-    with pytest.raises(SystemExit) as ended:
-        main(["run", scene, "--transport", "memory", "--out", out, "--set", "expect=[]", *asked])
-    return ended.value.code, json.loads((folder / "run" / "results.json").read_text())["fault"]
+    with pytest.raises(SystemExit) as error:
+        main(["run", scene, "--transport", "memory", "--out", out, "--set", "expect=[]", *options])
+    return error.value.code, json.loads((folder / "run" / "results.json").read_text())["fault"]
 
 
 def test_a_failure_in_an_unstable_coupling_tells_that_it_is_unstable(tmp_path, capsys):
-    status, told = fault(tmp_path, "scheme='serial'", *STIFF)
+    status, failure = fault(tmp_path, "scheme='serial'", *STIFF)
     assert status == 3
-    assert "the load must be below 1e8 N" in told["cause"]
-    text = told["coupling"][0]
+    assert "the load must be below 1e8 N" in failure["cause"]
+    text = failure["coupling"][0]
     assert text.startswith("the coupling of link spring seems unstable: ")
     assert 'set scheme = "iterated"' in text
     assert text in capsys.readouterr().err
 
 
 def test_a_failure_in_a_stable_coupling_blames_no_link(tmp_path):
-    status, told = fault(tmp_path, "components.lower.kind='fragile:Bounded'")
+    status, failure = fault(tmp_path, "components.lower.kind='fragile:Bounded'")
     assert status == 3
-    assert "the mass must stay below 0.52 m" in told["cause"]
-    assert "coupling" not in told
+    assert "the mass must stay below 0.52 m" in failure["cause"]
+    assert "coupling" not in failure

@@ -14,17 +14,17 @@ TRANSIT = 38.0  # s
 MATERIAL = {"density": 4.0, "youngs_modulus": 4.0, "poissons_ratio": 0.0}
 
 
-def _bar(**more):
+def _bar(**keys):
     part = {
         "lowest": [0.0, 0.0, 0.0],
         "highest": [LAYERS - 1.0, 1.0, 1.0],
         "elements": [LAYERS - 1, 1, 1],
-        "material": MATERIAL | more.pop("material", {}),
-        "velocity": more.pop("velocity", [0.0, 0.0, 0.0]),
+        "material": MATERIAL | keys.pop("material", {}),
+        "velocity": keys.pop("velocity", [0.0, 0.0, 0.0]),
     }
     end = {"lowest": [LAYERS - 1.0, 0.0, 0.0], "highest": [LAYERS - 1.0, 1.0, 1.0]}
-    plain = {"viscosity_linear": 0.0, "viscosity_quadratic": 0.0, "coupled_faces": [end]}
-    return {"kind": "toy_bars:Bar", "parts": [part], "courant": 1.0, **plain, **more}
+    defaults = {"viscosity_linear": 0.0, "viscosity_quadratic": 0.0, "coupled_faces": [end]}
+    return {"kind": "toy_bars:Bar", "parts": [part], "courant": 1.0, **defaults, **keys}
 
 
 def _run(folder, end, bar, rods=None, order=("bar", "rods"), **settings):
@@ -70,7 +70,7 @@ def test_energy_of_a_glued_bar_stays_over_thirty_transits(tmp_path):
     spans = len(energies) // 30
     # Rods know their velocities half a step before the bar does, so that means vary by some 0.5 %.
     assert abs(energies[-spans:].mean() / energies[:spans].mean() - 1.0) < 0.01
-    assert np.abs(energies / energies[0] - 1.0).max() < 0.05  # what leapfrog swings by
+    assert np.abs(energies / energies[0] - 1.0).max() < 0.05  # leapfrog's energy swings
 
 
 def _momentum(trace):
@@ -88,37 +88,39 @@ def test_where_a_face_erodes_its_particles_are_freed_and_momentum_stays(tmp_path
     bar, rods = trace.components["bar"], trace.components["rods"]
     start = -0.1 * (bar.built.mass.sum() + 4 * 0.5)  # what is glued moves with its nodes
     assert _momentum(trace) == pytest.approx(start, rel=1e-12)
-    # Totals close at every end of a window: as an element erodes, a window later, as its particles
-    # are told and its nodes let them go, and ever after.
-    totals = [one.totals() for one in (bar, rods)]
-    assert sum(one.mass for one in totals) == pytest.approx(bar.built.mass.sum() + rods.mass.sum())
-    assert sum(one.momentum[0] for one in totals) == pytest.approx(start, rel=1e-12)
+    # Totals close at the end of every window: when an element erodes, a window later, when its
+    # particles are freed and its nodes release them, and afterwards.
+    totals = [component.totals() for component in (bar, rods)]
+    assert sum(total.mass for total in totals) == pytest.approx(
+        bar.built.mass.sum() + rods.mass.sum()
+    )
+    assert sum(total.momentum[0] for total in totals) == pytest.approx(start, rel=1e-12)
     assert (bar.places.active(bar.state).min() == 0.0) == (end > 0.9)
-    torn = end > 1.1
-    assert bool(rods.held.all()) is not torn
-    # Their mass hangs on the nodes as long as they do.
-    hung = 1.0 / bar.model.inverse_mass - bar.built.mass
-    assert hung.sum() == pytest.approx(0.0 if torn else 4 * 0.5, abs=1e-12)
+    is_torn = end > 1.1
+    assert bool(rods.held.all()) is not is_torn
+    # Glued particles add their mass to the nodes until they are freed.
+    added_mass = 1.0 / bar.model.inverse_mass - bar.built.mass
+    assert added_mass.sum() == pytest.approx(0.0 if is_torn else 4 * 0.5, abs=1e-12)
     assert trace.account.momentum_residual <= 1e-12
     assert trace.account.other_residual <= 1e-12
 
 
 def test_what_hangs_on_nodes_is_part_of_their_saved_state(tmp_path):
-    torn, whole = (_run(tmp_path, end, TORN).components["bar"] for end in (4.0, 0.2))
+    torn, intact = (_run(tmp_path, end, TORN).components["bar"] for end in (4.0, 0.2))
     state = torn.save()
-    whole.load(state)
-    np.testing.assert_array_equal(whole.model.inverse_mass, torn.model.inverse_mass)
+    intact.load(state)
+    np.testing.assert_array_equal(intact.model.inverse_mass, torn.model.inverse_mass)
 
 
 @pytest.mark.parametrize(
-    ("places", "said"),
+    ("places", "pattern"),
     [
         ([[0.5, 0.5], [1.3, 0.5]], r"particle 1 of rods, at \[19\. +1\.3 +0\.5\] m, is 0\.3 m be"),
         ([[0.2, -0.4]], r"particle 0 of rods.* 0\.4 m beside the nearest one, face 0 of 1 m\. Let"),
     ],
 )
-def test_a_particle_beside_all_faces_is_refused(tmp_path, places, said):
-    with pytest.raises(LinkError, match=said):
+def test_a_particle_beside_all_faces_is_refused(tmp_path, places, pattern):
+    with pytest.raises(LinkError, match=pattern):
         _run(tmp_path, 1.0, {}, {"places": places})
 
 

@@ -63,10 +63,10 @@ def test_glue_conserves_momentum(tmp_path, order, places):
         return
     # In transit is the last window's impulse, but for the force of which the rods, too, will
     # feel the reaction in their next step only.
-    late = laboratory.in_transit(trace, "rods", "glued_load.force")
+    in_transit = laboratory.in_transit(trace, "rods", "glued_load.force")
     force = outputs_of(trace.components["rods"])["glued_load.force"].sum(axis=0)
-    rest = trace.momentum() + late - WINDOW * force
-    np.testing.assert_allclose(rest, 0.0, atol=1e-13)
+    momentum = trace.momentum() + in_transit - WINDOW * force
+    np.testing.assert_allclose(momentum, 0.0, atol=1e-13)
 
 
 def test_glued_masses_hang_on_their_nodes(tmp_path):
@@ -74,9 +74,9 @@ def test_glued_masses_hang_on_their_nodes(tmp_path):
     column = trace.components["column"]
     from toy_chains import Column
 
-    free = Column(Column.Params(layers=LAYERS)).mass
-    assert (column.mass - free)[:, -1].sum() == pytest.approx(3 * 0.5, rel=1e-14)
-    np.testing.assert_array_equal((column.mass - free)[:, :-1], 0.0)
+    free_mass = Column(Column.Params(layers=LAYERS)).mass
+    assert (column.mass - free_mass)[:, -1].sum() == pytest.approx(3 * 0.5, rel=1e-14)
+    np.testing.assert_array_equal((column.mass - free_mass)[:, :-1], 0.0)
 
 
 def _gain(trace):
@@ -97,7 +97,7 @@ def test_energy_of_glued_chains_stays_over_thirty_transits(tmp_path, order):
     trace = _run(tmp_path, 30 * TRANSIT, order=order)
     assert abs(_gain(trace) - 1.0) < 0.01
     energies = np.array(trace.energies)
-    assert np.abs(energies - energies[0]).max() < 0.06 * energies[0]  # what leapfrog swings by
+    assert np.abs(energies - energies[0]).max() < 0.06 * energies[0]  # leapfrog's energy swings
 
 
 STIFFER = [[2.5 * TRANSIT, 0.125], [7.5 * TRANSIT, 1.0], [11 * TRANSIT, 0.3]]
@@ -121,12 +121,12 @@ def test_windows_follow_the_state_and_energy_stays(tmp_path, rods, window):
     assert abs(_gain(trace) - 1.0) < 0.03
     assert trace.times[-1] == 15 * TRANSIT
     windows = np.diff(trace.times)
-    allowed = np.array([min(one.values()) for one in trace.stable])[:-1]
+    allowed = np.array([min(limits.values()) for limits in trace.stable])[:-1]
     assert (windows <= allowed * (1 + 1e-9)).all()
-    steps = {name: one.timing.steps for name, one in trace.coupling.components.items()}
+    steps = {name: component.timing.steps for name, component in trace.coupling.components.items()}
     assert steps == {"column": len(windows), "rods": len(windows)}
-    longer = windows[1:] / windows[:-1]
-    assert longer.max() <= 2.0 and (longer[:-3] > 1.0).sum() < 8
+    growth = windows[1:] / windows[:-1]
+    assert growth.max() <= 2.0 and (growth[:-3] > 1.0).sum() < 8
     if "stiffer" in rods:
         assert windows.min() < 0.13 * WINDOW and windows.max() > 0.8 * WINDOW
 
@@ -143,6 +143,6 @@ def test_glue_refuses_schemes_that_gain_or_lose_energy(tmp_path, scheme):
 def test_glue_refuses_ratios_that_gain_energy(tmp_path, ratio):
     path = _scene(tmp_path, 1.0)
     path.write_text(path.read_text().replace('kind = "glue"', f'kind = "glue"\nsubsteps = {ratio}'))
-    wrong = r"links.0: substeps must be 1; found .*at a ratio of 2 it gains 28 % .* at 4 66 %"
-    with pytest.raises(SceneError, match=wrong):
+    pattern = r"links.0: substeps must be 1; found .*at a ratio of 2 it gains 28 % .* at 4 66 %"
+    with pytest.raises(SceneError, match=pattern):
         laboratory.couple(path)

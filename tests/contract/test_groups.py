@@ -27,9 +27,9 @@ PAIR = {"pair": {"members": ["lower", "upper"], "scheme": "iterated", "window": 
 
 
 def _run(folder, window, groups=None, scheme="iterated", **settings):
-    more = {"groups": groups} if groups else {}
+    options = {"groups": groups} if groups else {}
     path = laboratory.scene(
-        folder, COMPONENTS, LINKS, end=END, window=window, scheme=scheme, **more, **settings
+        folder, COMPONENTS, LINKS, end=END, window=window, scheme=scheme, **options, **settings
     )
     return laboratory.couple(path)
 
@@ -41,36 +41,36 @@ def _ends(trace):
 
 
 def _calls(trace):
-    """Windows that were ordered of all components together, repetitions counted."""
-    return {name: one.timing.windows for name, one in trace.coupling.components.items()}
+    """Number of windows of each component, repetitions included."""
+    return {name: component.timing.windows for name, component in trace.coupling.components.items()}
 
 
 @pytest.fixture(scope="module")
-def small(tmp_path_factory):
+def small_windows(tmp_path_factory):
     """All in small windows."""
     return _run(tmp_path_factory.mktemp("small"), SMALL)
 
 
 @pytest.fixture(scope="module")
-def two(tmp_path_factory):
+def two_rates(tmp_path_factory):
     """The pair in small windows, the slow mass in large ones."""
     return _run(tmp_path_factory.mktemp("two"), LARGE, PAIR)
 
 
-def test_two_rates_give_the_answer_of_small_windows_for_less(small, two):
-    reference, found = _ends(small), _ends(two)
+def test_two_rates_give_the_answer_of_small_windows_for_less(small_windows, two_rates):
+    reference, ends = _ends(small_windows), _ends(two_rates)
     for name, exact in reference.items():
-        np.testing.assert_allclose(found[name], exact, atol=2e-4)  # of swings of 0.1 m
-    assert _calls(two)["slow"] < 0.15 * _calls(small)["slow"]
-    for trace in (small, two):
+        np.testing.assert_allclose(ends[name], exact, atol=2e-4)  # of swings of 0.1 m
+    assert _calls(two_rates)["slow"] < 0.15 * _calls(small_windows)["slow"]
+    for trace in (small_windows, two_rates):
         for account in trace.coupling.ledger.accounts.values():
             assert account.momentum_residual <= 1e-12
             assert account.kinematic_residual <= 1e-12
 
 
-def test_the_error_of_a_large_window_falls_at_second_order(tmp_path, small, two):
-    traces = _run(tmp_path, 2.0 * LARGE, PAIR), two, _run(tmp_path, 0.5 * LARGE, PAIR)
-    errors = [np.abs(_ends(trace)["slow"] - _ends(small)["slow"]).max() for trace in traces]
+def test_the_error_of_a_large_window_falls_at_second_order(tmp_path, small_windows, two_rates):
+    traces = _run(tmp_path, 2.0 * LARGE, PAIR), two_rates, _run(tmp_path, 0.5 * LARGE, PAIR)
+    errors = [np.abs(_ends(trace)["slow"] - _ends(small_windows)["slow"]).max() for trace in traces]
     assert min(laboratory.orders(errors)) > 1.7
 
 
@@ -84,19 +84,19 @@ def test_momentum_closes_to_rounding_in_every_scheme(tmp_path, scheme, inner, or
         assert account.momentum_residual <= 1e-12
 
 
-def test_a_group_may_follow_the_state_within_fixed_windows(tmp_path, small):
+def test_a_group_may_follow_the_state_within_fixed_windows(tmp_path, small_windows):
     groups = {"pair": {**PAIR["pair"], "window": "auto"}}
     trace = _run(tmp_path, LARGE, groups)
     assert trace.times[-1] == END
     np.testing.assert_allclose(np.diff(trace.times), LARGE, rtol=1e-9)
-    np.testing.assert_allclose(_ends(trace)["slow"], _ends(small)["slow"], atol=1e-3)
+    np.testing.assert_allclose(_ends(trace)["slow"], _ends(small_windows)["slow"], atol=1e-3)
 
 
-def test_groups_in_groups_are_groups(tmp_path, two):
-    inside = {**PAIR, "all": {"members": ["pair", "slow"], "scheme": "iterated", "window": LARGE}}
-    deep = _run(tmp_path, 2 * LARGE, inside)
-    for name, exact in _ends(two).items():
-        np.testing.assert_allclose(_ends(deep)[name], exact, atol=1e-9)
+def test_groups_in_groups_are_groups(tmp_path, two_rates):
+    groups = {**PAIR, "all": {"members": ["pair", "slow"], "scheme": "iterated", "window": LARGE}}
+    nested = _run(tmp_path, 2 * LARGE, groups)
+    for name, exact in _ends(two_rates).items():
+        np.testing.assert_allclose(_ends(nested)[name], exact, atol=1e-9)
 
 
 @pytest.mark.parametrize(

@@ -35,8 +35,8 @@ def test_relaxed_from_window_to_window_it_converges(tmp_path, relaxation, order)
 
 def test_a_whole_change_of_temperature_overshoots_without_bound(tmp_path):
     """The wall conducts 3.75 times as well as the slab."""
-    wild = np.abs(_mean(_run(tmp_path, windows=40)) - BETWEEN)
-    assert wild[-1] > 1e3 * wild[1]
+    errors = np.abs(_mean(_run(tmp_path, windows=40)) - BETWEEN)
+    assert errors[-1] > 1e3 * errors[1]
 
 
 def test_iterated_it_needs_no_relaxation(tmp_path):
@@ -50,17 +50,19 @@ def test_iterated_it_needs_no_relaxation(tmp_path):
 def test_every_joule_that_leaves_the_wall_reaches_the_slab(tmp_path, scheme):
     trace = _run(tmp_path, 0.2, scheme=scheme, noise=0.3)
     assert trace.account.heat_residual <= 1e-12
-    late = laboratory.in_transit(trace, "wall", "wall_heat.heat_flow")
+    in_transit = laboratory.in_transit(trace, "wall", "wall_heat.heat_flow")
     lost, gained = (trace.components[name].totals().internal for name in ("wall", "slab"))
     assert trace.account.heat == pytest.approx(gained, rel=1e-12)
-    assert -lost - float(late) == pytest.approx(gained, rel=1e-12)
+    assert -lost - float(in_transit) == pytest.approx(gained, rel=1e-12)
     assert trace.coupling.ledger.summary()["links"][0]["heat"] == trace.account.heat
 
 
 def test_with_noise_the_mean_of_many_windows_is_right(tmp_path):
-    found = _mean(_run(tmp_path, 0.1, windows=400, noise=0.2))[100:]
-    assert found.mean() == pytest.approx(BETWEEN, abs=4.0 * found.std() / np.sqrt(len(found) / 10))
-    assert 0.5 < found.std() < 5.0
+    temperatures = _mean(_run(tmp_path, 0.1, windows=400, noise=0.2))[100:]
+    assert temperatures.mean() == pytest.approx(
+        BETWEEN, abs=4.0 * temperatures.std() / np.sqrt(len(temperatures) / 10)
+    )
+    assert 0.5 < temperatures.std() < 5.0
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,4 @@
-"""A lattice that conducts and a slab: the temperature between them is that of their resistances."""
+"""A conducting lattice and a slab: the temperature between them follows from their resistances."""
 
 import laboratory
 import numpy as np
@@ -49,10 +49,10 @@ def conductance(folder):
     """Heat flow [W/K] through the lattice over the difference of its baths, in a run of its own."""
     params, mistakes = read(ParticleLatticeParams, LATTICE, "lattice", folder)
     assert not mistakes
-    made = ParticleLattice(params)
+    lattice = ParticleLattice(params)
     for _ in range(20):
-        made.step(WINDOW)
-    flow = made.give({"baths.heat_flow"})["baths.heat_flow"]
+        lattice.step(WINDOW)
+    flow = lattice.give({"baths.heat_flow"})["baths.heat_flow"]
     assert flow[0] == pytest.approx(-flow[1], rel=0.02)
     return 0.5 * (flow[0] - flow[1]) / (BETWEEN - COLD)
 
@@ -60,8 +60,9 @@ def conductance(folder):
 @pytest.mark.slow
 def test_a_lattice_and_a_slab_find_the_temperature_between_them(tmp_path):
     """Within 3 % of the difference; every joule that leaves the lattice's wall reaches the slab."""
-    own = conductance(tmp_path)
-    slab = own * (BETWEEN - COLD) / (HOT - BETWEEN)  # W/K, so that it should be BETWEEN
+    lattice_conductance = conductance(tmp_path)
+    # W/K, so that the temperature should be BETWEEN.
+    slab = lattice_conductance * (BETWEEN - COLD) / (HOT - BETWEEN)
     components = {
         "slab": {"kind": "toy_heat:Slab", "hot": HOT, "conductance": slab / 4},
         "bar": {"kind": "particle_lattice"} | LATTICE,
@@ -69,6 +70,6 @@ def test_a_lattice_and_a_slab_find_the_temperature_between_them(tmp_path):
     link = {"kind": "heat", "name": "heat", "between": ["bar", "slab"], "relaxation": [0.5, 0.2]}
     settings = {"window": WINDOW, "end": 24 * WINDOW, "order": ["slab", "bar"]}
     trace = laboratory.couple(laboratory.scene(tmp_path, components, link, **settings))
-    found = trace.history("slab", "node_temperature.temperature").mean(axis=1)
-    assert found[8:].mean() == pytest.approx(BETWEEN, abs=0.03 * (HOT - COLD))
+    temperatures = trace.history("slab", "node_temperature.temperature").mean(axis=1)
+    assert temperatures[8:].mean() == pytest.approx(BETWEEN, abs=0.03 * (HOT - COLD))
     assert trace.account.heat_residual <= 1e-12

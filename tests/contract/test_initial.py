@@ -1,4 +1,4 @@
-"""What a kind tells of how it begins is what the component says once it is built."""
+"""The initial fields that a kind declares are those of the component once it is built."""
 
 import numpy as np
 import pytest
@@ -15,11 +15,11 @@ def test_a_kind_foretells_how_its_component_begins_and_how_large_it_is(kind, tmp
         folder.mkdir()
         trial = Trial(manifest, case, folder)
         component = trial.build()
-        told = manifest.initial(trial.params)
-        instants = frozenset(trial.outputs.keys() & told.keys()) - trial.impulses
-        said = {**component.describe(), **component.give(instants)}
-        assert told and told.keys() <= said.keys() and instants
-        for key, array in told.items():
-            np.testing.assert_allclose(array, said[key], rtol=1e-12, atol=1e-15, err_msg=key)
+        initial = manifest.initial(trial.params)
+        instants = frozenset(trial.outputs.keys() & initial.keys()) - trial.impulses
+        outputs = {**component.describe(), **component.give(instants)}
+        assert initial and initial.keys() <= outputs.keys() and instants
+        for key, array in initial.items():
+            np.testing.assert_allclose(array, outputs[key], rtol=1e-12, atol=1e-15, err_msg=key)
         if manifest.plan:
             assert manifest.plan(trial.params).items == component.items()

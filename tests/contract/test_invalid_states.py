@@ -15,20 +15,20 @@ from quintet.interfaces.serving.serve import Server, answer
 STEPS, WINDOW = 3, 2  # steps of a window; the window in which a number is spoilt
 
 
-def of_item(state, number):
+def row_of(state, number):
     return int(np.flatnonzero(state.identity == number)[0])
 
 
 def spoil_fluid(fluid):
-    fluid.state.velocity_pressure[of_item(fluid.state, 3), 1] = np.nan
+    fluid.state.velocity_pressure[row_of(fluid.state, 3), 1] = np.nan
 
 
 def spoil_solid(solid):
-    solid.state.strain[of_item(solid.state, 3)] = np.nan
+    solid.state.strain[row_of(solid.state, 3)] = np.nan
 
 
 def spoil_energy(solid):
-    solid.state.energy[of_item(solid.state, 5)] = np.inf
+    solid.state.energy[row_of(solid.state, 5)] = np.inf
 
 
 def spoil_body(bodies):
@@ -56,7 +56,7 @@ def spoil_sphere(spheres):
     spheres.state.temperature[0] = np.nan
 
 
-# Kind, what is spoilt, after which step of the window, what is said of it.
+# Kind, function that spoils a number, step of the window after which it does so, message.
 SPOILT = [
     ("sph_fluid", spoil_fluid, 3, "velocity must be finite; particle 3 at ("),
     ("sph_fluid", spoil_fluid, 1, "a fluid particle must stay finite.*particle 3 at ("),
@@ -72,14 +72,14 @@ SPOILT = [
 
 
 class Answers:
-    """A line that keeps what is sent."""
+    """A line that keeps the last message."""
 
     def send(self, header, fields):
         self.header, self.fields = header, fields
 
 
 @pytest.fixture
-def served(tmp_path):
+def serve_case(tmp_path):
     """Serve the first case of a kind; return the component and a function that orders windows."""
 
     def serve(kind):
@@ -110,15 +110,15 @@ def served(tmp_path):
     return serve
 
 
-@pytest.mark.parametrize(("kind", "spoil", "at", "said"), SPOILT)
-def test_a_spoilt_number_is_found_in_its_window(served, kind, spoil, at, said):
-    component, window = served(kind)
+@pytest.mark.parametrize(("kind", "spoil", "step_number", "message"), SPOILT)
+def test_a_spoilt_number_is_found_in_its_window(serve_case, kind, spoil, step_number, message):
+    component, window = serve_case(kind)
     step, steps = type(component).step, []
 
     def spoiling(dt):
         step(component, dt)
         steps.append(dt)
-        if len(steps) == at:
+        if len(steps) == step_number:
             spoil(component)
 
     for number in range(WINDOW):
@@ -127,6 +127,6 @@ def test_a_spoilt_number_is_found_in_its_window(served, kind, spoil, at, said):
     component.step = spoiling
     header, fields = window(WINDOW)
     assert header["order"] == "failed" and header["error"] == "StepError"
-    assert re.search(re.escape(said).replace(r"\.\*", ".*"), header["text"]), header["text"]
-    assert len(steps) in (at, at + 1)
+    assert re.search(re.escape(message).replace(r"\.\*", ".*"), header["text"]), header["text"]
+    assert len(steps) in (step_number, step_number + 1)
     assert len(header["place"]) == 3 and "points" in fields

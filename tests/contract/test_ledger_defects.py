@@ -1,4 +1,4 @@
-"""The ledger sees what goes wrong between two components; each defect is put in on purpose."""
+"""The ledger detects defects between two components; each defect is put in on purpose."""
 
 import laboratory
 import numpy as np
@@ -55,16 +55,16 @@ def test_an_undisturbed_run_of_balls_is_clean(tmp_path, scheme):
 
 
 def _change_answers(monkeypatch, name, change):
-    """Let every window's answer of a component be changed on its way."""
+    """Change every window's answer of a component on its way."""
     finish = Participant.finish
 
-    def changed(part):
-        message = finish(part)
-        if part.name == name:
+    def finish_changed(participant):
+        message = finish(participant)
+        if participant.name == name:
             message.fields = {key: change(key, array) for key, array in message.fields.items()}
         return message
 
-    monkeypatch.setattr(Participant, "finish", changed)
+    monkeypatch.setattr(Participant, "finish", finish_changed)
 
 
 @pytest.mark.parametrize("scheme", SCHEMES)
@@ -106,22 +106,22 @@ def test_a_wrong_sign_of_one_axis_shows(tmp_path, monkeypatch):
 def test_a_wrong_sign_of_the_torque_shows(tmp_path, monkeypatch):
     conservative = RigidMap.map_conservative
 
-    def wrong(self, force, arms):
+    def negated(self, force, arms):
         total, torque = conservative(self, force, arms)
         return total, -torque
 
-    monkeypatch.setattr(RigidMap, "map_conservative", wrong)
+    monkeypatch.setattr(RigidMap, "map_conservative", negated)
     assert _balls(tmp_path).angular_residual > 0.01
 
 
 def test_a_wrong_sign_of_the_mapped_velocity_shows_in_the_work(tmp_path, monkeypatch):
     consistent = ShapeMap.map_consistent
 
-    def wrong(self, values):
-        found = consistent(self, values)
-        return found if np.abs(values).max() > 1.0 else -found  # velocities, not positions
+    def negated(self, values):
+        mapped = consistent(self, values)
+        return mapped if np.abs(values).max() > 1.0 else -mapped  # velocities, not positions
 
-    monkeypatch.setattr(ShapeMap, "map_consistent", wrong)
+    monkeypatch.setattr(ShapeMap, "map_consistent", negated)
     assert _plate(tmp_path, "parallel").energy_residual > 0.5
 
 
@@ -131,26 +131,26 @@ def test_inputs_half_a_step_late_or_early_show(tmp_path, monkeypatch, scheme, ru
     over = Inputs.over
     for shift in (0.5, -0.5, 1e-3):
 
-        def shifted(self, begin, end, window, shift=shift):
+        def over_shifted(self, begin, end, window, shift=shift):
             late = shift * (end - begin)
             return over(self, begin + late, end + late, window)
 
-        monkeypatch.setattr(Inputs, "over", shifted)
+        monkeypatch.setattr(Inputs, "over", over_shifted)
         assert run(tmp_path, scheme).kinematic_residual > 100 * LIMIT
 
 
 @pytest.mark.parametrize("scheme", SCHEMES)
 @pytest.mark.parametrize("window", [0, 13, 28])
 def test_a_window_lost_between_two_components_shows(tmp_path, monkeypatch, scheme, window):
-    """What the gust gave in one window is lost; what it gave before is applied once more."""
+    """The gust's output of one window is lost; the output before it is applied once more."""
     advance = Coupling.advance_outputs
 
-    def losing(self, given):
-        if "gust" in given.outputs and self.windows.done == window:
-            given = Given({"gust": self.outputs["gust"]}, {"gust": self.sent["gust"]})
-        advance(self, given)
+    def lose_window(self, answers):
+        if "gust" in answers.outputs and self.windows.done == window:
+            answers = Given({"gust": self.outputs["gust"]}, {"gust": self.sent["gust"]})
+        advance(self, answers)
 
-    monkeypatch.setattr(Coupling, "advance_outputs", losing)
+    monkeypatch.setattr(Coupling, "advance_outputs", lose_window)
     assert _plate(tmp_path, scheme).momentum_residual > 1e-5
 
 
@@ -158,15 +158,15 @@ def test_a_window_lost_between_two_components_shows(tmp_path, monkeypatch, schem
 def test_a_window_applied_twice_shows(tmp_path, monkeypatch, scheme):
     advance = Server.advance
 
-    def twice(self, window, asked=0):
-        steps, applied, given = advance(self, window, asked)
+    def advance_twice(self, window, asked=0):
+        steps, applied, fields = advance(self, window, asked)
         if "node_load.force" in self.inputs.fields and self.guard.window == 14:
-            more, again, given = advance(self, window)
-            steps += more
-            applied = {key: (np.add(a, again[key])).tolist() for key, a in applied.items()}
-        return steps, applied, given
+            more_steps, applied_again, fields = advance(self, window)
+            steps += more_steps
+            applied = {key: (np.add(a, applied_again[key])).tolist() for key, a in applied.items()}
+        return steps, applied, fields
 
-    monkeypatch.setattr(Server, "advance", twice)
+    monkeypatch.setattr(Server, "advance", advance_twice)
     assert _plate(tmp_path, scheme).momentum_residual > 0.1
 
 

@@ -42,23 +42,23 @@ def _exact():
     from toy_plates import Plate
 
     mesh = Plate(Plate.Params()).describe()
-    asked = Sampling(SPACING, depth=SPACING, inset=0.0, planar=False)
-    found = sample_faces(mesh["faces.start"], mesh["faces.corner"], asked)
-    shape, area = ShapeMap(found.node, found.weight, 12), found.volume / SPACING
+    sampling = Sampling(SPACING, depth=SPACING, inset=0.0, planar=False)
+    samples = sample_faces(mesh["faces.start"], mesh["faces.corner"], sampling)
+    shape, area = ShapeMap(samples.node, samples.weight, 12), samples.volume / SPACING
     phi = np.array([shape.map_consistent(unit[:, None])[:, 0] for unit in np.eye(12)]).T  # (n, 12)
-    place = shape.map_consistent(mesh["faces.start"])[:, 0]
+    positions = shape.map_consistent(mesh["faces.start"])[:, 0]
     # sin(k x - ω t) = sin(k x) cos(ω t) - cos(k x) sin(ω t), with cos and sin as two more unknowns.
-    pulsation, zero, one = WAVE * SPEED, np.zeros((12, 12)), np.eye(12)
+    pulsation, zero, identity = WAVE * SPEED, np.zeros((12, 12)), np.eye(12)
     push = (
         -PRESSURE
         * phi.T
-        @ (area[:, None] * np.column_stack([np.sin(WAVE * place), -np.cos(WAVE * place)]))
+        @ (area[:, None] * np.column_stack([np.sin(WAVE * positions), -np.cos(WAVE * positions)]))
     )
     damping = DRAG * phi.T @ (area[:, None] * phi)
     system = np.block(
         [
-            [zero, one, np.zeros((12, 2))],
-            [-STIFFNESS / MASS * one, -damping / MASS, push / MASS],
+            [zero, identity, np.zeros((12, 2))],
+            [-STIFFNESS / MASS * identity, -damping / MASS, push / MASS],
             [np.zeros((2, 24)), np.array([[0.0, -pulsation], [pulsation, 0.0]])],
         ]
     )
@@ -100,11 +100,13 @@ def test_impulse_given_is_impulse_applied(tmp_path, scheme, ratio, slow):
     account = trace.account
     assert account.momentum_residual <= 1e-12
     assert account.kinematic_residual <= 1e-12
-    # By hand as well: of all windows but the ones that come late, mapped and applied.
-    given = trace.history("gust", "surface_load.force").sum(axis=(0, 1))
+    # By hand as well: impulses of all windows, without those that are applied late.
+    impulse = trace.history("gust", "surface_load.force").sum(axis=(0, 1))
     if scheme == "parallel":
-        given = given - laboratory.in_transit(trace, "gust", "surface_load.force")
-    np.testing.assert_allclose(account.impulse, given, rtol=0.0, atol=1e-12 * np.abs(given).max())
+        impulse = impulse - laboratory.in_transit(trace, "gust", "surface_load.force")
+    np.testing.assert_allclose(
+        account.impulse, impulse, rtol=0.0, atol=1e-12 * np.abs(impulse).max()
+    )
 
 
 @pytest.mark.parametrize("scheme", ["serial", "parallel"])
@@ -122,7 +124,7 @@ def test_iterated_windows_do_the_same_work_on_both_sides(tmp_path):
 
 
 def test_of_two_plates_in_one_gust_each_link_counts_its_own_work(tmp_path):
-    """The work of a port that links share is parted among them, as forces and samples are."""
+    """The work of a port that links share is divided among them, as forces and samples are."""
     components = {
         "gust": {"kind": "toy_plates:Gust", "dt": 0.002, "spacing": SPACING},
         "soft": {"kind": "toy_plates:Plate", "dt": 0.01},

@@ -63,11 +63,11 @@ def test_momentum_and_heat_close_to_rounding(tmp_path, scheme, ratio, order):
     assert account.momentum_residual <= 1e-12
     assert account.heat_residual <= 1e-12
     assert account.kinematic_residual <= 1e-12
-    # What the air gained the pucks lost, but for the last window's impulse where it comes late.
+    # The air gains the pucks' momentum, except the last window's impulse where it comes late.
     late = scheme == "parallel" or (scheme == "serial" and order[0] == "pucks")
     transit = laboratory.in_transit(trace, "air", "breath.force") if late else np.zeros(3)
-    owed = trace.coupling.in_transit.get(("pucks", "breath.force"), np.zeros((1, 3))).sum(axis=0)
-    total = trace.momentum() + transit + owed
+    rest = trace.coupling.in_transit.get(("pucks", "breath.force"), np.zeros((1, 3))).sum(axis=0)
+    total = trace.momentum() + transit + rest
     np.testing.assert_allclose(total, MASS * START.sum(axis=0), rtol=0.0, atol=1e-12)
 
 

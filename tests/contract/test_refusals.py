@@ -1,4 +1,4 @@
-"""What links do not allow is refused as the scene is read, or before the first window."""
+"""Scenes that links do not allow are refused as they are read, or before the first window."""
 
 import json
 
@@ -37,23 +37,23 @@ def test_glue_into_a_group_is_refused(tmp_path):
     path = laboratory.scene(tmp_path, components, link, end=1.0, window=0.1, groups=groups)
     with pytest.raises(SceneError, match="both sides must make equal steps; one of them is in a g"):
         laboratory.couple(path)
-    both = {"pair": {"members": ["column", "rods"]}}
+    pair = {"pair": {"members": ["column", "rods"]}}
     laboratory.couple(
-        laboratory.scene(tmp_path, components, link, end=1.0, window=0.3, groups=both)
+        laboratory.scene(tmp_path, components, link, end=1.0, window=0.3, groups=pair)
     )
 
 
 def test_what_shows_when_ports_are_joined_is_refused_with_status_2(tmp_path, capsys, monkeypatch):
-    """Bodies smaller than the spacing at which the fluid wants them: known to neither alone."""
+    """Bodies are smaller than the fluid's spacing; neither component alone knows it."""
     monkeypatch.chdir(tmp_path)
     components = {"gust": GUST, "balls": {"kind": "toy_bodies:Balls", "diameter": 0.01}}
     link = {"kind": "fsi", "between": ["gust", "balls"]}
     path = laboratory.scene(tmp_path, components, link, end=0.1, window=0.02)
-    with pytest.raises(SystemExit) as ended:
+    with pytest.raises(SystemExit) as error:
         main(["run", str(path), "--out", "out"])
-    assert ended.value.code == 2
-    said = capsys.readouterr().err
-    assert "a body must be at least 0.125 m across" in said and "Traceback" not in said
+    assert error.value.code == 2
+    message = capsys.readouterr().err
+    assert "a body must be at least 0.125 m across" in message and "Traceback" not in message
     assert json.loads((tmp_path / "out/results.json").read_text())["status"] == "refused"
     assert not (tmp_path / "out/recording.h5").exists()
 
@@ -104,16 +104,16 @@ def test_what_a_component_refuses_is_a_mistake_of_the_scene(tmp_path, transport,
     (tmp_path / f"{name.lower()}.py").write_text(PICKY.format(name=name, method=method))
     text = path.read_text().replace("toys:Toy", f"{name.lower()}:{name}", 1)
     path.write_text(text)
-    with pytest.raises(SystemExit) as ended:
+    with pytest.raises(SystemExit) as error:
         main(["run", str(path), "--out", str(tmp_path / "out")])
-    assert ended.value.code == 2
-    said = capfd.readouterr().err
-    assert "components.ping: items must be odd; found 4. Add one." in said
-    assert "Traceback" not in said
+    assert error.value.code == 2
+    message = capfd.readouterr().err
+    assert "components.ping: items must be odd; found 4. Add one." in message
+    assert "Traceback" not in message
 
 
 def test_an_item_that_is_not_there_is_told_before_the_first_window(tmp_path, capsys):
-    """Of bodies as the scene is checked; of what the solver alone knows as ports are joined."""
+    """Items of bodies are checked with the scene, others as ports are joined."""
     path = write_scene(tmp_path, end=0.01)
     expect = """
 [[expect]]
@@ -129,15 +129,15 @@ unit = "m"
 source = "none"
 """
     path.write_text(path.read_text() + expect)
-    with pytest.raises(SystemExit) as ended:
+    with pytest.raises(SystemExit) as error:
         main(["run", str(path), "--out", str(tmp_path / "out")])
-    assert ended.value.code == 2
+    assert error.value.code == 2
     rule = "expectation e: item must be below 5, as many as pong has of out.number; found 5."
     assert rule in capsys.readouterr().err
     assert json.loads((tmp_path / "out/results.json").read_text())["windows"] == 0
-    with pytest.raises(SystemExit) as ended:
+    with pytest.raises(SystemExit) as error:
         main(["check", "dam_break_cubes", "--set", "expect.0.item=3"])
-    assert ended.value.code == 2
+    assert error.value.code == 2
     assert "item must be below 3, as many as cubes has of motion.position; found 3." in (
         capsys.readouterr().err
     )
@@ -146,14 +146,14 @@ source = "none"
 @pytest.mark.parametrize("command", [["study", "two_springs"], ["bench", "echo"]])
 def test_a_file_for_results_that_cannot_be_written_is_told_at_once(tmp_path, capsys, command):
     for path in (tmp_path, tmp_path / "none" / "found.json"):
-        with pytest.raises(SystemExit) as ended:
+        with pytest.raises(SystemExit) as error:
             main([*command, "--json", str(path)])
-        assert ended.value.code == 2
+        assert error.value.code == 2
         assert f"--json {path}: it must be a file that can be written" in capsys.readouterr().err
 
 
 def test_an_endpoint_that_is_none_is_told_to_who_joins(capsys):
-    with pytest.raises(SystemExit) as ended:
+    with pytest.raises(SystemExit) as error:
         main(["join", "two_springs", "upper", "--at", "nowhere"])
-    assert ended.value.code == 2
+    assert error.value.code == 2
     assert "--at endpoint 'nowhere': must be tcp/HOST:PORT on the" in capsys.readouterr().err

@@ -61,16 +61,16 @@ SCENES = pytest.mark.parametrize("make", [_glued, _groups])
 def _run(path, out, *arguments, threads="1"):
     environment = {**os.environ, "OPENBLAS_NUM_THREADS": threads}
     command = [sys.executable, "-m", "quintet.coupler.cli", "run", str(path), "--out", str(out)]
-    done = subprocess.run(
+    process = subprocess.run(
         [*command, *arguments], timeout=120, capture_output=True, text=True, env=environment
     )
-    # 1: the staggered toys are unstable, and told so; their bits are the same all the same.
-    assert done.returncode in (0, 1), done.stdout + done.stderr
+    # 1: the staggered toys are unstable, and reported as such; their bits are the same even so.
+    assert process.returncode in (0, 1), process.stdout + process.stderr
     return out
 
 
 @pytest.fixture(scope="module")
-def alone(tmp_path_factory):
+def run_alone(tmp_path_factory):
     """Make a scene and run it in one process, once for all tests."""
 
     @cache
@@ -84,8 +84,8 @@ def alone(tmp_path_factory):
 
 @SCENES
 @pytest.mark.parametrize("transport", OVER)
-def test_every_transport_gives_the_same_bits(tmp_path, alone, make, transport):
-    path, memory = alone(make)
+def test_every_transport_gives_the_same_bits(tmp_path, run_alone, make, transport):
+    path, memory = run_alone(make)
     assert compare(memory, _run(path, tmp_path / transport, "--transport", transport)) is None
 
 
@@ -94,29 +94,32 @@ def test_from_a_snapshot_it_goes_on_with_the_same_bits(tmp_path, monkeypatch, ma
     monkeypatch.setattr(snapshots, "remove", lambda paths: None)
     monkeypatch.syspath_prepend(tmp_path)
     scene = load(str(make(tmp_path)), transport="memory")
-    first, again = tmp_path / "first", tmp_path / "again"
+    first, resumed = tmp_path / "first", tmp_path / "again"
     make_folder(scene, first)
     assert simulate(scene, first) == 0
-    shutil.copytree(first, again)
-    kept = sorted(again.glob("snapshot-*.h5"), key=snapshots.window_of)
-    assert len(kept) >= 1
-    assert simulate(load(str(scene.path), transport="memory"), again, kept[0]) == 0
-    assert compare(first, again) is None
+    shutil.copytree(first, resumed)
+    saved_files = sorted(resumed.glob("snapshot-*.h5"), key=snapshots.window_of)
+    assert len(saved_files) >= 1
+    assert simulate(load(str(scene.path), transport="memory"), resumed, saved_files[0]) == 0
+    assert compare(first, resumed) is None
     for name in ("ledger.csv", "convergence.csv", "convergence-pair.csv"):
         if (first / name).exists():
-            assert (first / name).read_bytes() == (again / name).read_bytes()
+            assert (first / name).read_bytes() == (resumed / name).read_bytes()
 
 
 @pytest.mark.parametrize("make", [_glued, _serial])
-def test_beside_a_replay_the_others_get_the_same_bits(tmp_path, alone, make):
-    """Integrals are handed on as they were recorded, windows follow the steps told then."""
-    path, memory = alone(make)
-    swapped = "rods" if make is _glued else "slow"
-    other = _run(path, tmp_path / "other", "--swap", f"{swapped}=replay@{memory}")
-    with h5py.File(memory / "recording.h5") as one, h5py.File(other / "recording.h5") as two:
-        for name in one["components"]:
-            # What only the replaced component took is not given any more.
-            tracks = one[f"components/{name}"], two[f"components/{name}"]
+def test_beside_a_replay_the_others_get_the_same_bits(tmp_path, run_alone, make):
+    """Integrals are handed on as they were recorded, windows follow the recorded steps."""
+    path, memory = run_alone(make)
+    replaced = "rods" if make is _glued else "slow"
+    replayed = _run(path, tmp_path / "other", "--swap", f"{replaced}=replay@{memory}")
+    with (
+        h5py.File(memory / "recording.h5") as first,
+        h5py.File(replayed / "recording.h5") as second,
+    ):
+        for name in first["components"]:
+            # Fields that only the replaced component took are not given any more.
+            tracks = first[f"components/{name}"], second[f"components/{name}"]
             for key in ("ticks", *(f"fields/{field}" for field in tracks[1]["fields"])):
                 assert np.array_equal(tracks[0][key][()], tracks[1][key][()]), (name, key)
 

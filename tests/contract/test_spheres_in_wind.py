@@ -33,9 +33,9 @@ LINK = {
 
 
 def _scene(folder, window, ratio=1, scheme="iterated", **settings):
-    one = {"radius": 0.5 * SIZE, "density": DENSITY, "specific_heat": CAPACITY}
-    still = {**one, "centre": [0.0, 0.0, 0.0], "angular_velocity": SPIN.tolist()}
-    parcel = {**one, "centre": [0.0, 1.0, 0.0], "velocity": [0.0, 3.0, 0.0], "parcel": 50.0}
+    sphere = {"radius": 0.5 * SIZE, "density": DENSITY, "specific_heat": CAPACITY}
+    still = {**sphere, "centre": [0.0, 0.0, 0.0], "angular_velocity": SPIN.tolist()}
+    parcel = {**sphere, "centre": [0.0, 1.0, 0.0], "velocity": [0.0, 3.0, 0.0], "parcel": 50.0}
     components = {
         "balls": {
             "kind": "particle_spheres",
@@ -56,7 +56,7 @@ def _scene(folder, window, ratio=1, scheme="iterated", **settings):
 
 
 def _errors(trace):
-    """Of velocity, spin and temperature at the end, over how much they have to change."""
+    """Errors of velocity, spin and temperature at the end, relative to their changes."""
     last = trace.outputs[-1]["balls"]
     first = np.array([[0.0, 0.0, 0.0], [0.0, 3.0, 0.0]])
     velocity = WIND + (first - WIND) * np.exp(-END / RELAXES)
@@ -74,8 +74,8 @@ def test_velocity_spin_and_temperature_converge_to_the_exact_relaxation(tmp_path
         _errors(laboratory.couple(_scene(tmp_path, STOPS / n, ratio=2))) for n in (10, 20, 40)
     ]
     assert max(errors[-1]) < 2e-4
-    for one in zip(*errors, strict=True):
-        assert min(laboratory.orders(list(one))) > 1.9
+    for quantity_errors in zip(*errors, strict=True):
+        assert min(laboratory.orders(list(quantity_errors))) > 1.9
 
 
 @pytest.mark.parametrize("scheme", ["serial", "parallel", "iterated"])
@@ -96,9 +96,9 @@ def test_two_processes_and_a_resumption_give_the_bits_of_one_process(tmp_path, m
         scene = load(path, transport=transport)
         make_folder(scene, tmp_path / transport)
         assert simulate(scene, tmp_path / transport) == 0
-    again = tmp_path / "again"
-    shutil.copytree(tmp_path / "zenoh", again)
-    kept = sorted(again.glob("snapshot-*.h5"), key=snapshots.window_of)
-    assert simulate(load(path, transport="zenoh"), again, kept[0]) == 0
+    resumed = tmp_path / "again"
+    shutil.copytree(tmp_path / "zenoh", resumed)
+    saved_files = sorted(resumed.glob("snapshot-*.h5"), key=snapshots.window_of)
+    assert simulate(load(path, transport="zenoh"), resumed, saved_files[0]) == 0
     assert compare(tmp_path / "memory", tmp_path / "zenoh") is None
-    assert compare(tmp_path / "memory", again) is None
+    assert compare(tmp_path / "memory", resumed) is None

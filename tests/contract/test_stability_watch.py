@@ -1,4 +1,4 @@
-"""A coupling that is unstable is told, with what makes it stable; a stable one is not."""
+"""Unstable couplings are reported with a remedy; stable ones are not."""
 
 import laboratory
 import pytest
@@ -12,7 +12,7 @@ LINK = {
 
 
 def swing(folder, burden, scheme, window=0.01, step=None, **settings):
-    """A mass on a spring that carries another; no staggered scheme holds if that is the heavier."""
+    """A mass on a spring carries a second one; staggered schemes fail if the second is heavier."""
     components = {
         "swing": {"kind": "toy_points:Swing", "dt": window},
         "burden": {"kind": "toy_points:Burden", "mass": burden, "dt": step or window},
@@ -24,7 +24,7 @@ def swing(folder, burden, scheme, window=0.01, step=None, **settings):
 
 
 def instabilities(trace):
-    """What is told of links that are unstable, beside what is told of windows that are too long."""
+    """Warnings of unstable links, without those of windows that are too long."""
     return [text for text in trace.warnings if "its coupling is unstable" in text]
 
 
@@ -36,8 +36,8 @@ def test_a_burden_too_heavy_for_staggered_windows_is_told_once_and_iterated_ones
     (text,) = instabilities(trace)
     assert text.startswith("warning of link swing-burden: its coupling is unstable: by t = 0.1")
     assert text.endswith('of the work that went through it; set scheme = "iterated".')
-    found = trace.coupling.ledger.warnings.summary()
-    (time,) = [one["time"] for one in found if one["subject"] == "stability"]
+    warnings = trace.coupling.ledger.warnings.summary()
+    (time,) = [warning["time"] for warning in warnings if warning["subject"] == "stability"]
     assert 0.01 * (FEWEST - 0.5) < time < 0.3, "no link is judged by a jolt at the start"
     assert instabilities(swing(tmp_path, 2.0, "iterated")) == []
 
@@ -59,14 +59,14 @@ def test_windows_longer_than_the_step_of_who_pushes_are_to_be_repeated_and_short
 def test_what_was_seen_outlives_a_snapshot(tmp_path):
     trace = swing(tmp_path, 2.0, "serial")
     watch = trace.judgement.stability
-    kept = StabilityWatch(watch.unstable)
-    kept.load(watch.save())
-    assert kept.save() == watch.save() and kept.unstable == watch.unstable
+    resumed = StabilityWatch(watch.unstable)
+    resumed.load(watch.save())
+    assert resumed.save() == watch.save() and resumed.unstable == watch.unstable
 
 
 def test_no_link_is_judged_by_work_that_is_rounding_beside_the_energies_of_the_run():
-    made = LinkWork(
+    work = LinkWork(
         work_given=0.0, work_taken=7e-17, turnover=1e-16, late=7e-17, late_turnover=1e-16
     )
-    assert made.is_unstable(FEWEST, 0.0)
-    assert not made.is_unstable(FEWEST, 1e-9 * 20.0)  # J
+    assert work.is_unstable(FEWEST, 0.0)
+    assert not work.is_unstable(FEWEST, 1e-9 * 20.0)  # J

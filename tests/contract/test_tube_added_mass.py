@@ -40,8 +40,8 @@ def toys(ratio, stretch):
 
 
 def energy(components):
-    totals = [one.totals() for one in components]
-    return sum(one.kinetic + one.internal for one in totals)
+    totals = [component.totals() for component in components]
+    return sum(total.kinetic + total.internal for total in totals)
 
 
 def window(ratio):
@@ -50,44 +50,44 @@ def window(ratio):
 
 
 def drive(ratio, stretch, settings, windows=WINDOWS, one_wave=False):
-    """Iterate every window to agreement; mean repetitions, relative drift of the energy, toys."""
-    membrane, channel = both = toys(ratio, stretch)
+    """Iterate every window to agreement; return mean repetitions, energy drift and the toys."""
+    membrane, channel = components = toys(ratio, stretch)
     if one_wave:
         membrane.q[1:] = 0.0
     length = window(ratio)
     acceleration = make(settings, is_impulse)
     measure = ConvergenceMeasure(settings.tolerance, settings.absolute, is_impulse)
     speed = outputs_of(membrane)["membrane.velocity"]
-    found, repetitions, energies = {KEY: np.zeros_like(speed)}, [], [energy(both)]
+    impulses, repetitions, energies = {KEY: np.zeros_like(speed)}, [], [energy(components)]
     for _ in range(windows):
-        guess, kept = found, [one.save() for one in both]
+        guess, states = impulses, [component.save() for component in components]
         acceleration.begin_window(length)
         for repetition in range(settings.limit + 1):
-            for one, state in zip(both, kept, strict=True) if repetition else ():
-                one.load(state)
+            for component, state in zip(components, states, strict=True) if repetition else ():
+                component.load(state)
             membrane.take({"pressure.force": guess[KEY] / length})
             membrane.step(length)
             end = outputs_of(membrane)["membrane.velocity"]
             channel.take({"wall.velocity": 0.5 * (speed + end)})
             channel.step(length)
-            found = {KEY: length * outputs_of(channel)["pressure.force"]}
-            residuals = measure.compare(guess, found, length)
+            impulses = {KEY: length * outputs_of(channel)["pressure.force"]}
+            residuals = measure.compare(guess, impulses, length)
             if converged(residuals):
                 break
-            guess = acceleration.next(guess, found, allowed(residuals))
+            guess = acceleration.next(guess, impulses, allowed(residuals))
         else:
             raise AssertionError(f"no agreement in {settings.limit} repetitions")
-        acceleration.end_window(guess, found)
+        acceleration.end_window(guess, impulses)
         repetitions.append(repetition)
-        energies.append(energy(both))
+        energies.append(energy(components))
         speed = end
-    return float(np.mean(repetitions)), float(np.ptp(energies)) / energies[0], both
+    return float(np.mean(repetitions)), float(np.ptp(energies)) / energies[0], components
 
 
-def options(kind, ratio, tolerance=1e-6, **given):
+def options(kind, ratio, tolerance=1e-6, **keys):
     if kind == "constant":
-        given |= {"relaxation": 2.0 / (2.0 + ratio)}
-    return IterationSettings(acceleration=kind, tolerance=tolerance, limit=LIMIT, **given)
+        keys |= {"relaxation": 2.0 / (2.0 + ratio)}
+    return IterationSettings(acceleration=kind, tolerance=tolerance, limit=LIMIT, **keys)
 
 
 def table(tolerance, stretch):
@@ -102,11 +102,11 @@ def table(tolerance, stretch):
     yield f"tolerance {tolerance:g}, force per strain {stretch:g} N"
     yield "ratio  " + "  ".join(columns)
     for ratio in RATIOS:
-        found = [
-            drive(ratio, stretch, options(ratio=ratio, tolerance=tolerance, **one))[0]
-            for one in columns.values()
+        means = [
+            drive(ratio, stretch, options(ratio=ratio, tolerance=tolerance, **keys))[0]
+            for keys in columns.values()
         ]
-        cells = [f"{mean:{len(name)}.1f}" for name, mean in zip(columns, found, strict=True)]
+        cells = [f"{mean:{len(name)}.1f}" for name, mean in zip(columns, means, strict=True)]
         yield f"{ratio:5d}  " + "  ".join(cells)
 
 
@@ -130,8 +130,10 @@ def test_of_a_problem_that_is_not_linear_quasi_newton_remembers_what_still_holds
 
 
 def test_constant_relaxation_takes_more_the_heavier_the_water():
-    found = [drive(ratio, LINEAR, options("constant", ratio), windows=20)[0] for ratio in (1, 10)]
-    assert found[1] > 4.0 * found[0]
+    repetitions = [
+        drive(ratio, LINEAR, options("constant", ratio), windows=20)[0] for ratio in (1, 10)
+    ]
+    assert repetitions[1] > 4.0 * repetitions[0]
 
 
 @pytest.mark.parametrize("ratio", [1, 100])
@@ -164,9 +166,9 @@ def test_over_the_coupler_energy_is_kept_and_momentum_closes(tmp_path):
     trace = laboratory.couple(_scene(tmp_path, 10, iteration={"limit": LIMIT}))
     assert np.ptp(trace.energies) < 1e-4 * trace.energies[0]
     assert trace.account.momentum_residual <= 1e-12
-    place = trace.history("membrane", "membrane.position")[:, :, 2]
-    assert place[0].max() == pytest.approx(0.05, rel=0.01)
-    assert place.min() < -0.01  # it swung
+    heights = trace.history("membrane", "membrane.position")[:, :, 2]
+    assert heights[0].max() == pytest.approx(0.05, rel=0.01)
+    assert heights.min() < -0.01  # it swung
 
 
 @pytest.mark.parametrize("ratio", [10, 100])

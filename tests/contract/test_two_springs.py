@@ -20,8 +20,8 @@ LIFT = 0.1  # m
 def _exact(times):
     """Displacements of the lower and the upper mass, from the normal modes."""
     slow, fast = np.cos(10.0 * (GOLDEN - 1.0) * times), np.cos(10.0 * GOLDEN * times)
-    part = LIFT / (1.0 + GOLDEN**2)
-    return part * GOLDEN * (slow - fast), part * (GOLDEN**2 * slow + fast)
+    amplitude = LIFT / (1.0 + GOLDEN**2)
+    return amplitude * GOLDEN * (slow - fast), amplitude * (GOLDEN**2 * slow + fast)
 
 
 def test_the_component_fits_on_a_screen():
@@ -38,8 +38,10 @@ def _run(tmp_path, transport, settings=()):
 def test_two_springs_meet_what_they_expect(tmp_path):
     status, results = _run(tmp_path, "memory")
     assert status == 0
-    end = [float(one) for one in _exact(1.0)]
-    assert [one["reference"] for one in results["expect"]] == pytest.approx(end, abs=1e-9)
+    end = [float(displacement) for displacement in _exact(1.0)]
+    assert [expectation["reference"] for expectation in results["expect"]] == pytest.approx(
+        end, abs=1e-9
+    )
     (link,) = results["ledger"]["links"]
     assert link["momentum_residual"] <= 1e-12
     assert link["kinematic_residual"] <= 1e-12

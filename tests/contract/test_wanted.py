@@ -3,7 +3,7 @@
 import h5py
 import laboratory
 import pytest
-from toy_gauges import ASKED, TOLD
+from toy_gauges import BINDINGS, REQUESTS
 
 from quintet.coupler.run.simulate import make_folder, simulate
 from quintet.coupler.scene.read import load
@@ -13,17 +13,17 @@ WINDOWS, STEPS = 5, 10
 
 
 @pytest.fixture
-def sent(monkeypatch):
+def answer_sizes(monkeypatch):
     """Bytes of every answer, as they cross the line."""
     sizes = []
-    put = FramedLine.send
+    send = FramedLine.send
 
-    def counted(line, header, fields):
+    def send_and_count(line, header, fields):
         if header.get("order") == "done":
             sizes.append(sum(array.nbytes for array in fields.values()))
-        put(line, header, fields)
+        send(line, header, fields)
 
-    monkeypatch.setattr(FramedLine, "send", counted)
+    monkeypatch.setattr(FramedLine, "send", send_and_count)
     return sizes
 
 
@@ -44,31 +44,31 @@ def _run(folder, link=None, count=1000, **settings):
     return recorded["gauged"]
 
 
-def test_alone_it_gives_sends_and_records_nothing(tmp_path, sent):
+def test_alone_it_gives_sends_and_records_nothing(tmp_path, answer_sizes):
     assert _run(tmp_path) == set()
-    assert not ASKED and TOLD["joined"] == set()
-    assert max(sent) == 0
+    assert not REQUESTS and BINDINGS["joined"] == set()
+    assert max(answer_sizes) == 0
 
 
-def test_an_expectation_asks_for_one_field_at_windows_ends(tmp_path, sent):
+def test_an_expectation_asks_for_one_field_at_windows_ends(tmp_path, answer_sizes):
     expected = {
         "name": "gauge", "component": "gauged", "field": "gauge.value", "measure": "max",
         "value": 0.0, "within": 0.0, "unit": "Pa", "source": "none",
     }  # fmt: skip
     assert _run(tmp_path, expect=[expected]) == {"gauge.value"}
-    assert ASKED == {"gauge.value": 1 + WINDOWS}  # and at the start
-    assert max(sent) == 8 * 1000
+    assert REQUESTS == {"gauge.value": 1 + WINDOWS}  # and at the start
+    assert max(answer_sizes) == 8 * 1000
 
 
-def test_a_link_asks_for_impulses_after_every_step(tmp_path, sent):
+def test_a_link_asks_for_impulses_after_every_step(tmp_path, answer_sizes):
     link = {"kind": "direct", "pairs": [["gauged.push", "spring.load"]]}
     assert _run(tmp_path, [link], count=1) == {"push.force"}
-    assert ASKED == {"push.force": 1 + WINDOWS * STEPS}
-    assert TOLD["joined"] == {"push"}
+    assert REQUESTS == {"push.force": 1 + WINDOWS * STEPS}
+    assert BINDINGS["joined"] == {"push"}
 
 
-def test_output_fields_are_recorded_though_no_link_reads_them(tmp_path, sent):
-    asked = {"fields": ["gauged.motion.velocity"]}
-    assert _run(tmp_path, output=asked) == {"motion.velocity"}
-    assert ASKED == {"motion.velocity": 1 + WINDOWS}
-    assert max(sent) == 3 * 8 * 1000
+def test_output_fields_are_recorded_though_no_link_reads_them(tmp_path, answer_sizes):
+    output_fields = {"fields": ["gauged.motion.velocity"]}
+    assert _run(tmp_path, output=output_fields) == {"motion.velocity"}
+    assert REQUESTS == {"motion.velocity": 1 + WINDOWS}
+    assert max(answer_sizes) == 3 * 8 * 1000

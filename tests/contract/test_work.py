@@ -1,4 +1,4 @@
-"""Work of forces and of torques: the same on both sides of a link, as far as both saw the same."""
+"""Work of forces and of torques: the same on both sides of a link, if both saw the same motion."""
 
 import laboratory
 import numpy as np
@@ -35,8 +35,8 @@ def test_forces_and_torques_both_work(tmp_path):
     by_force = END * 0.8 * ((np.array([2.0, 0.0, 0.5]) - v) * v).sum()
     forces = _run(tmp_path, 0.05, 1, "iterated", 1e18, twist=1e-12)
     assert forces.work_given == pytest.approx(by_force, rel=1e-9)
-    both = _run(tmp_path, 0.05, 1, "iterated", 1e18)
-    assert abs(both.work_taken - by_force) > 0.5
+    combined = _run(tmp_path, 0.05, 1, "iterated", 1e18)
+    assert abs(combined.work_taken - by_force) > 0.5
 
 
 @pytest.mark.parametrize(

@@ -15,7 +15,7 @@ class Bar(FePlate):
 
     @parameters
     class Params(FePlateParams):
-        """Of the hump."""
+        """The hump."""
 
         height: Number = 0.0  # m/s
 
@@ -28,7 +28,7 @@ class Bar(FePlate):
 
 
 class LooseRods(Rods):
-    """Rods that go on by themselves where the face that they are glued to has eroded.
+    """Rods that move freely where the face that they are glued to has eroded.
 
     In their first free step no force acts on their ends: the nodes have got it.
     """
@@ -46,12 +46,12 @@ class LooseRods(Rods):
             self.pulled = np.array(fields["glued.velocity"][:, 0]) * self.held
 
     def step(self, dt: float) -> None:
-        own = self.params.stiffness * (self.u[:, 1] - self.u[:, 0]) / self.mass[:, 0]
-        free = self.v[:, 0] + dt * own * (self.gave == 0.0)
-        told = self.pulled
-        self.pulled = np.where(self.held > 0.0, told, free)
+        acceleration = self.params.stiffness * (self.u[:, 1] - self.u[:, 0]) / self.mass[:, 0]
+        free = self.v[:, 0] + dt * acceleration * (self.gave == 0.0)
+        glued_velocity = self.pulled
+        self.pulled = np.where(self.held > 0.0, glued_velocity, free)
         super().step(dt)
-        self.pulled, self.gave = told, self.held
+        self.pulled, self.gave = glued_velocity, self.held
 
     def give(self, wanted: Keys) -> Fields:
         return {key: self.held[:, None] * force for key, force in super().give(wanted).items()}
@@ -64,7 +64,7 @@ class LooseRods(Rods):
         self.held, self.gave = np.array(state["held"]), np.array(state["gave"])
 
     def totals(self) -> Totals:
-        """Of all but the glued masses, which the bar carries."""
-        own = self.mass.copy()
-        own[:, 0] *= 1.0 - self.held
-        return chain_totals(own, self.u, self.v, self.params.stiffness)
+        """Totals without the glued masses, which the bar carries."""
+        mass = self.mass.copy()
+        mass[:, 0] *= 1.0 - self.held
+        return chain_totals(mass, self.u, self.v, self.params.stiffness)

@@ -70,13 +70,13 @@ class Balls(Component):
         self.x, self.q = self.x + 0.5 * dt * self.v, turn(self.q, self.spin, 0.5 * dt)
 
     def give(self, wanted: Keys) -> Fields:
-        given = {
+        outputs = {
             "motion.position": self.x,
             "motion.velocity": self.v,
             "motion.orientation": self.q,
             "motion.angular_velocity": self.spin,
         }
-        return {key: given[key].copy() for key in wanted}
+        return {key: outputs[key].copy() for key in wanted}
 
     def save(self) -> Fields:
         return {
@@ -128,16 +128,16 @@ class Wind(Component):
             return
         params = self.params
         self.force = params.drag * (np.array(params.velocity) - fields["body.velocity"])
-        hard = 1.0 + fields["body.orientation"][:, 1:2] ** 2
-        gap = np.array(params.spin) - fields["body.angular_velocity"]
-        self.torque = params.twist * hard * gap
+        hardening = 1.0 + fields["body.orientation"][:, 1:2] ** 2
+        difference = np.array(params.spin) - fields["body.angular_velocity"]
+        self.torque = params.twist * hardening * difference
 
     def step(self, dt: float) -> None:
         pass
 
     def give(self, wanted: Keys) -> Fields:
-        given = {"drag.force": self.force, "drag.torque": self.torque}
-        return {key: given[key].copy() for key in wanted}
+        outputs = {"drag.force": self.force, "drag.torque": self.torque}
+        return {key: outputs[key].copy() for key in wanted}
 
     def save(self) -> Fields:
         return {"force": self.force.copy(), "torque": self.torque.copy()}

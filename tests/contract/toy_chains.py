@@ -136,8 +136,8 @@ class Rods(Component):
     def stable_dt(self) -> float:
         """As if the rods grew stiffer and back, and hovered about a limit."""
         factor = 1.0
-        for time, new in self.params.stiffer:
-            factor = new if self.time >= time else factor
+        for time, scale in self.params.stiffer:
+            factor = scale if self.time >= time else factor
         swing = 1.0 + self.params.hover * float(np.sin(2.39996 * self.steps))
         return self.params.dt * factor * swing
 
@@ -156,15 +156,15 @@ class Rods(Component):
         return {key: chain_force(self.u, self.params.stiffness)[:, :1] * X for key in wanted}
 
     def save(self) -> Fields:
-        kept = {"u": self.u.copy(), "v": self.v.copy(), "pulled": self.pulled.copy()}
-        return {**kept, "clock": np.array([self.time, self.steps])}
+        state = {"u": self.u.copy(), "v": self.v.copy(), "pulled": self.pulled.copy()}
+        return {**state, "clock": np.array([self.time, self.steps])}
 
     def load(self, state: Fields) -> None:
         self.u, self.v, self.pulled = (np.array(state[key]) for key in ("u", "v", "pulled"))
         self.time, self.steps = float(state["clock"][0]), int(state["clock"][1])
 
     def totals(self) -> Totals:
-        """Of all but the glued masses, which the mesh carries."""
-        free = self.mass.copy()
-        free[:, 0] = 0.0
-        return chain_totals(free, self.u, self.v, self.params.stiffness)
+        """Totals without the glued masses, which the mesh carries."""
+        free_mass = self.mass.copy()
+        free_mass[:, 0] = 0.0
+        return chain_totals(free_mass, self.u, self.v, self.params.stiffness)

@@ -1,4 +1,4 @@
-"""Toy: a thing with many fields, which counts how often it is asked for each."""
+"""Toy: a component with many fields, which counts the requests for each."""
 
 from collections import Counter
 
@@ -8,13 +8,13 @@ from quintet.interfaces.component import Component, Field, Fields, Keys, Port
 from quintet.interfaces.params import Count, Positive, parameters
 from quintet.interfaces.ports import FORCE, POSITION, VELOCITY
 
-ASKED: Counter[str] = Counter()
-TOLD: dict[str, frozenset[str]] = {}
+REQUESTS: Counter[str] = Counter()
+BINDINGS: dict[str, frozenset[str]] = {}
 VALUE = Field("value", (), "Pa")
 
 
 class Gauged(Component):
-    """Points at rest, a force on them and a gauge that is dear to read."""
+    """Points at rest, a force on them and a gauge that is expensive to read."""
 
     takes = (Port("load", (FORCE,)),)
     gives = (Port("motion", (POSITION, VELOCITY)), Port("push", (FORCE,)), Port("gauge", (VALUE,)))
@@ -28,10 +28,10 @@ class Gauged(Component):
 
     def __init__(self, params: Params) -> None:
         self.params = params
-        ASKED.clear()
+        REQUESTS.clear()
 
     def bind(self, static: Fields, joined: Keys) -> None:
-        TOLD["joined"] = frozenset(joined)
+        BINDINGS["joined"] = frozenset(joined)
 
     def stable_dt(self) -> float:
         return self.params.dt
@@ -43,7 +43,7 @@ class Gauged(Component):
         pass
 
     def give(self, wanted: Keys) -> Fields:
-        ASKED.update(wanted)
+        REQUESTS.update(wanted)
         shapes = {"gauge.value": (self.params.count,)}
         return {key: np.zeros(shapes.get(key, (self.params.count, 3))) for key in wanted}
 

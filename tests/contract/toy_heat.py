@@ -61,7 +61,7 @@ class Slab(Component):
 
 
 class Wall(Component):
-    """Points that conduct to a cold bath; towards the slab leaves what it lacks to stay hot."""
+    """Points that conduct from the slab to a cold bath."""
 
     takes = (WALL_TEMPERATURE,)
     gives = (WALL_HEAT,)

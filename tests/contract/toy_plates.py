@@ -50,8 +50,8 @@ class Plate(Component):
         self.v = half + 0.5 * dt * (self.push - stiffness * self.u) / mass
 
     def give(self, wanted: Keys) -> Fields:
-        given = {"faces.position": self.start + self.u, "faces.velocity": self.v.copy()}
-        return {key: given[key] for key in wanted}
+        outputs = {"faces.position": self.start + self.u, "faces.velocity": self.v.copy()}
+        return {key: outputs[key] for key in wanted}
 
     def save(self) -> Fields:
         return {"u": self.u.copy(), "v": self.v.copy(), "push": self.push.copy()}
@@ -126,8 +126,8 @@ class Gust(Component):
         return {key: self.force.copy() for key in wanted}
 
     def save(self) -> Fields:
-        kept = {"place": self.place, "speed": self.speed, "force": self.force}
-        return {key: array.copy() for key, array in kept.items()} | {"time": np.array([self.time])}
+        state = {"place": self.place, "speed": self.speed, "force": self.force}
+        return {key: array.copy() for key, array in state.items()} | {"time": np.array([self.time])}
 
     def load(self, state: Fields) -> None:
         self.place, self.speed = np.array(state["place"]), np.array(state["speed"])

@@ -47,8 +47,8 @@ class Pucks(Component):
         self.warmth = self.warmth + dt * self.heating
 
     def give(self, wanted: Keys) -> Fields:
-        given = {"flight.position": self.position, "flight.velocity": self.velocity}
-        return {key: given[key].copy() for key in wanted}
+        outputs = {"flight.position": self.position, "flight.velocity": self.velocity}
+        return {key: outputs[key].copy() for key in wanted}
 
     def save(self) -> Fields:
         return {key: getattr(self, key).copy() for key in self.KEPT}
@@ -99,12 +99,12 @@ class Air(Component):
     def give(self, wanted: Keys) -> Fields:
         drag, share = self.params.drag, self.params.share
         heat = share * drag * (self.speed**2).sum(axis=1)
-        given = {"breath.force": -drag * self.speed, "breath.heat": heat}
-        return {key: given[key] for key in wanted}
+        outputs = {"breath.force": -drag * self.speed, "breath.heat": heat}
+        return {key: outputs[key] for key in wanted}
 
     def save(self) -> Fields:
-        kept = {"speed": self.speed.copy(), "momentum": self.momentum.copy()}
-        return {**kept, "warmth": np.array([self.warmth])}
+        state = {"speed": self.speed.copy(), "momentum": self.momentum.copy()}
+        return {**state, "warmth": np.array([self.warmth])}
 
     def load(self, state: Fields) -> None:
         self.speed, self.momentum = np.array(state["speed"]), np.array(state["momentum"])
@@ -151,8 +151,8 @@ class Swing(Component):
         self.x = middle + 0.5 * dt * self.v
 
     def give(self, wanted: Keys) -> Fields:
-        given = {"swing.position": self.x, "swing.velocity": self.v}
-        return {key: given[key].copy() for key in wanted}
+        outputs = {"swing.position": self.x, "swing.velocity": self.v}
+        return {key: outputs[key].copy() for key in wanted}
 
     def save(self) -> Fields:
         return {"x": self.x.copy(), "v": self.v.copy(), "push": self.push.copy()}
@@ -191,7 +191,7 @@ class Burden(Component):
         self.middle = np.array(fields.get("carried.velocity", self.middle))
 
     def step(self, dt: float) -> None:
-        """What comes holds in the middle of the step; go on as far again to its end."""
+        """The received velocity holds in the middle of the step; extrapolate it to the end."""
         end = 2.0 * self.middle - self.v
         self.force = -self.params.mass * (end - self.v) / dt
         self.v = end

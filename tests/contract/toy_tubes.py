@@ -98,8 +98,8 @@ class Membrane(Component):
         start = np.outer(self.place, [1.0, 0.0, 0.0])
         position = start + np.outer(self.sines @ self.q, UP)
         velocity = np.outer(self.sines @ self.v, UP)
-        given = {"membrane.position": position, "membrane.velocity": velocity}
-        return {key: given[key] for key in wanted}
+        outputs = {"membrane.position": position, "membrane.velocity": velocity}
+        return {key: outputs[key] for key in wanted}
 
     def save(self) -> Fields:
         return {"q": self.q.copy(), "v": self.v.copy(), "push": self.push.copy()}
@@ -109,11 +109,11 @@ class Membrane(Component):
 
     def totals(self) -> Totals:
         params, slope = self.params, self._slope(self.q)
-        line = params.mass * self.spacing  # kg of a node
-        kinetic = 0.5 * line * float(self.v @ self.v)
-        momentum = line * float((self.sines @ self.v).sum()) * UP
+        node_mass = params.mass * self.spacing  # kg of a node
+        kinetic = 0.5 * node_mass * float(self.v @ self.v)
+        momentum = node_mass * float((self.sines @ self.v).sum()) * UP
         internal = 0.5 * slope * (params.tension + 0.25 * params.stretch / params.length * slope)
-        return Totals(line * params.count, momentum, np.zeros(3), kinetic, 0.0, internal)
+        return Totals(node_mass * params.count, momentum, np.zeros(3), kinetic, 0.0, internal)
 
 
 class Channel(Component):
@@ -147,7 +147,7 @@ class Channel(Component):
             self.middle = np.array(fields["wall.velocity"][:, 2])
 
     def step(self, dt: float) -> None:
-        """What comes holds in the middle of the step; go on as far again to its end."""
+        """The received velocity holds in the middle of the step; extrapolate it to the end."""
         end = 2.0 * self.middle - self.v
         self.force = -self.mass @ (end - self.v) / dt
         self.v = end

@@ -41,28 +41,28 @@ class Wind(Component):
         return self.params.dt
 
     def take(self, fields: Fields) -> None:
-        one, many = self.params, np.pi * self.number
+        params, factor = self.params, np.pi * self.number
         if "spheres.diameter" not in fields:
             return
         d = fields["spheres.diameter"]
         turning = fields["motion.angular_velocity"]
-        relative = np.array(one.velocity) - fields["spheres.velocity"]
-        self.force = 3.0 * one.viscosity * (many * d)[:, None] * relative
-        self.torque = -one.viscosity * (many * d**3)[:, None] * turning
-        self.heat = 2.0 * one.conductivity * many * d
-        self.heat = self.heat * (one.temperature - fields["spheres.temperature"])
+        relative = np.array(params.velocity) - fields["spheres.velocity"]
+        self.force = 3.0 * params.viscosity * (factor * d)[:, None] * relative
+        self.torque = -params.viscosity * (factor * d**3)[:, None] * turning
+        self.heat = 2.0 * params.conductivity * factor * d
+        self.heat = self.heat * (params.temperature - fields["spheres.temperature"])
 
     def step(self, dt: float) -> None:
         self.momentum = self.momentum - dt * self.force.sum(axis=0)
         self.heated -= dt * float(self.heat.sum())
 
     def give(self, wanted: Keys) -> Fields:
-        given = {
+        outputs = {
             "load.force": self.force,
             "load.torque": self.torque,
             "heat.heat_flow": self.heat,
         }
-        return {key: given[key].copy() for key in wanted}
+        return {key: outputs[key].copy() for key in wanted}
 
     def save(self) -> Fields:
         loads = np.column_stack([self.force, self.torque, self.heat, self.number])
