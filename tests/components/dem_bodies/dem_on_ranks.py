@@ -1,4 +1,4 @@
-"""What test_dem_bodies_ranks.py runs on several ranks; rank 0 writes what came out."""
+"""Scenes that test_dem_bodies_ranks.py runs on several ranks; rank 0 writes the results."""
 
 import numpy as np
 from dem_scenes import NOTHING, box, material, sphere
@@ -39,7 +39,7 @@ def heap(nx, ny, nz, seed=1, **changes):
     return table
 
 
-def with_boxes():
+def heap_with_boxes():
     """Two boxes fall into the spheres: every rank computes their contacts."""
     table = heap(9, 9, 12)
     size = (0.05, 0.05, 0.05)
@@ -48,18 +48,18 @@ def with_boxes():
     return table
 
 
-def begun():
-    """They begin elsewhere, with a floor that vanishes, a box that is let go, and less friction."""
+def restarted_heap():
+    """Spheres that begin from another run: the floor vanishes, a box is released, less friction."""
     table = heap(9, 9, 12, friction=0.1)
     table["planes"] = [*PLANES[1:], {**PLANES[0], "until": 1e-3}]
-    held = {"locked": ["x", "y", "z", "rotation_x", "rotation_y", "rotation_z"]}
-    table["bodies"].append(box((0.1, 0.1, 0.31), (0.05, 0.05, 0.05), **held, released_at=5e-4))
+    locks = {"locked": ["x", "y", "z", "rotation_x", "rotation_y", "rotation_z"]}
+    table["bodies"].append(box((0.1, 0.1, 0.31), (0.05, 0.05, 0.05), **locks, released_at=5e-4))
     return table
 
 
 def state_elsewhere():
     """State of the same bodies on one rank, with another friction and other planes."""
-    table = begun() | heap(9, 9, 12, friction=0.5) | {"bodies": begun()["bodies"]}
+    table = restarted_heap() | heap(9, 9, 12, friction=0.5) | {"bodies": restarted_heap()["bodies"]}
     params, _ = read(DemBodiesParams, table, "begun")
     bodies = DemBodies(params)
     for _ in range(40):
@@ -70,13 +70,13 @@ def state_elsewhere():
 SCENES = {
     "heap": lambda: heap(10, 10, 12),
     "rolling": lambda: heap(9, 9, 13, rolling_friction=0.1) | {"contact_forces": True, **FRONT},
-    "boxes": lambda: with_boxes() | FRONT,
-    "begun": begun,
+    "boxes": lambda: heap_with_boxes() | FRONT,
+    "begun": restarted_heap,
 }
 
 
 class Run(SolverRun):
-    """A case of bodies under a load that changes, which every rank gets whole."""
+    """A scene under a changing load; each rank receives the loads of all bodies."""
 
     def build(self):
         params, _ = read(DemBodiesParams, SCENES[self.name](), self.name)

@@ -17,23 +17,23 @@ FLOOR = {"point": [0.0, 0.0, 0.0], "normal": [0.0, 0.0, 1.0], "material": "a"}
 NOTHING = [0.0, 0.0, 0.0]
 
 
-def material(**given):
+def material(**changes):
     return {
         "youngs_modulus": 1e8,
         "poissons_ratio": 0.3,
         "restitution": 0.5,
         "friction": 0.3,
-    } | given
+    } | changes
 
 
-def sphere(position, diameter=0.02, **given):
-    plain = {"shape": "sphere", "radius": 0.5 * diameter, "density": 2500.0, "material": "a"}
-    return plain | {"centre": list(position)} | given
+def sphere(position, diameter=0.02, **properties):
+    defaults = {"shape": "sphere", "radius": 0.5 * diameter, "density": 2500.0, "material": "a"}
+    return defaults | {"centre": list(position)} | properties
 
 
-def box(position, size=(0.15, 0.15, 0.15), **given):
-    plain = {"shape": "box", "density": 800.0, "material": "a"}
-    return plain | corners(position, size) | given
+def box(position, size=(0.15, 0.15, 0.15), **properties):
+    defaults = {"shape": "box", "density": 800.0, "material": "a"}
+    return defaults | corners(position, size) | properties
 
 
 def _decimal(number):
@@ -41,44 +41,44 @@ def _decimal(number):
 
 
 def corners(position, size):
-    """Corners of a box about a place, such that decimal numbers have the same size and middle."""
+    """Corners of a box around its centre; the decimal numbers give exactly that size and centre."""
     pairs = list(zip(map(_decimal, position), map(_decimal, size), strict=True))
     low, high = [float(x - s / 2) for x, s in pairs], [float(x + s / 2) for x, s in pairs]
     return {"lowest": low, "highest": high}
 
 
-def disc(position, diameter=0.2, **given):
-    plain = {"shape": "disc", "radius": 0.5 * diameter, "density": 1000.0, "material": "a"}
-    return plain | {"centre": list(position)} | given
+def disc(position, diameter=0.2, **properties):
+    defaults = {"shape": "disc", "radius": 0.5 * diameter, "density": 1000.0, "material": "a"}
+    return defaults | {"centre": list(position)} | properties
 
 
-def polygon(position, corners, **given):
-    plain = {"shape": "polygon", "corners": corners, "density": 800.0, "material": "a"}
-    return plain | {"origin": list(position)} | given
+def polygon(position, corners, **properties):
+    defaults = {"shape": "polygon", "corners": corners, "density": 800.0, "material": "a"}
+    return defaults | {"origin": list(position)} | properties
 
 
-def rectangle(position, width=0.15, height=0.15, **given):
+def rectangle(position, width=0.15, height=0.15, **properties):
     x, z = 0.5 * width, 0.5 * height
-    return polygon(position, [[-x, -z], [x, -z], [x, z], [-x, z]], **given)
+    return polygon(position, [[-x, -z], [x, -z], [x, z], [-x, z]], **properties)
 
 
-def params(bodies, materials=None, **given):
+def params(bodies, materials=None, **settings):
     scene = {"bodies": bodies, "materials": {"a": material()} if materials is None else materials}
-    found, mistakes = read(DemBodiesParams, scene | given, "bodies")
+    parsed, mistakes = read(DemBodiesParams, scene | settings, "bodies")
     assert not mistakes, mistakes
-    return found
+    return parsed
 
 
-def mistakes(bodies, **given):
-    scene = {"bodies": bodies, "materials": {"a": material()}} | given
+def mistakes(bodies, **settings):
+    scene = {"bodies": bodies, "materials": {"a": material()}} | settings
     return read(DemBodiesParams, scene, "bodies")[1]
 
 
-def build(bodies, materials=None, threads=1, **given):
-    """Bodies as they are before the first step of a run: their contacts are known."""
-    made = DemBodies(params(bodies, materials, **given), Resources(threads))
-    made.stable_dt()
-    return made
+def build(bodies, materials=None, threads=1, **settings):
+    """Bodies before the first step of a run, with their contacts listed."""
+    solver = DemBodies(params(bodies, materials, **settings), Resources(threads))
+    solver.stable_dt()
+    return solver
 
 
 def run(component, end, watch=None, dt=None):

@@ -1,4 +1,4 @@
-"""Agglomerates: measured as the shape in the file, covered by spheres, refused with a reason."""
+"""Agglomerates: mass and inertia of the shape in the file, spheres that cover it, refusals."""
 
 import numpy as np
 import pytest
@@ -33,9 +33,15 @@ def files(tmp_path):
     return tmp_path
 
 
-def body(file, dim=8, radius=0.0125, scale=1.0, **given):
-    plain = {"shape": "mesh", "file": str(file), "scale": scale, "density": 800.0, "material": "a"}
-    return plain | {"agglomerate": {"dim": dim, "sphere_radius": radius}} | given
+def body(file, dim=8, radius=0.0125, scale=1.0, **properties):
+    defaults = {
+        "shape": "mesh",
+        "file": str(file),
+        "scale": scale,
+        "density": 800.0,
+        "material": "a",
+    }
+    return defaults | {"agglomerate": {"dim": dim, "sphere_radius": radius}} | properties
 
 
 def exact_l():
@@ -60,7 +66,7 @@ def exact_ball():
 
 
 @pytest.mark.parametrize(
-    ("file", "scale", "exact", "within"),
+    ("file", "scale", "exact", "tolerance"),
     [
         ("cube.stl", 1e-3, (EDGE**3, NOTHING, EDGE**5 / 6 * np.eye(3)), 1e-6),
         ("ball.ply", 1.0, exact_ball(), 1e-2),
@@ -69,43 +75,45 @@ def exact_ball():
         ("l.npy", EDGE / 3, exact_l(), 1e-12),
     ],
 )
-def test_volume_and_inertia_are_those_of_the_shape(files, file, scale, exact, within):
-    found = agglomerate(str(files / file), scale, 8, 0.0125)
+def test_volume_and_inertia_are_those_of_the_shape(files, file, scale, exact, tolerance):
+    shape = agglomerate(str(files / file), scale, 8, 0.0125)
     volume, _, inertia = exact
-    assert found.volume == pytest.approx(volume, rel=within)
-    np.testing.assert_allclose(found.inertia, inertia, atol=within * np.abs(inertia).max())
-    assert 50 < len(found.centres) < 500
+    assert shape.volume == pytest.approx(volume, rel=tolerance)
+    np.testing.assert_allclose(shape.inertia, inertia, atol=tolerance * np.abs(inertia).max())
+    assert 50 < len(shape.centres) < 500
     scene = build([body(files / file, scale=scale)])
-    assert scene.mass[0] == pytest.approx(800.0 * volume, rel=within)
+    assert scene.mass[0] == pytest.approx(800.0 * volume, rel=tolerance)
 
 
 def test_spheres_touch_a_cube_from_within(files):
-    one = agglomerate(str(files / "cube.stl"), 1e-3, 8, 0.0125)
-    assert len(one.centres) == 8**3 - 6**3
-    np.testing.assert_allclose(np.abs(one.centres).max(axis=1), 0.5 * EDGE - 0.0125, rtol=1e-6)
+    cube = agglomerate(str(files / "cube.stl"), 1e-3, 8, 0.0125)
+    assert len(cube.centres) == 8**3 - 6**3
+    np.testing.assert_allclose(np.abs(cube.centres).max(axis=1), 0.5 * EDGE - 0.0125, rtol=1e-6)
 
 
 def test_spheres_of_an_l_lie_in_it_and_its_centre_is_its_own(files):
-    one = agglomerate(str(files / "l.obj"), 1.0, 8, 0.0125)
-    x, y, z = (one.centres + exact_l()[1]).T
+    shape = agglomerate(str(files / "l.obj"), 1.0, 8, 0.0125)
+    x, y, z = (shape.centres + exact_l()[1]).T
     assert min(x.min(), y.min(), z.min()) == pytest.approx(0.0125, rel=1e-3)
     assert max(x.max(), y.max(), z.max()) == pytest.approx(EDGE - 0.0125, rel=1e-3)
-    notch = np.hypot(np.maximum(EDGE / 3 - x, 0.0), np.maximum(EDGE / 3 - z, 0.0))  # m, from it
+    notch = np.hypot(
+        np.maximum(EDGE / 3 - x, 0.0), np.maximum(EDGE / 3 - z, 0.0)
+    )  # m, distance from the edge
     assert notch.min() > 0.0125 * 0.999
     assert np.isclose(notch, 0.0125, rtol=1e-3).sum() > 30  # spheres touch it
 
 
 def test_spheres_touch_a_ball_on_every_side(files):
-    one = agglomerate(str(files / "ball.ply"), 1.0, 8, 0.0125)
-    ways = np.random.default_rng(1).normal(size=(500, 3))
-    ways /= np.linalg.norm(ways, axis=1)[:, None]
-    reach = (ways @ one.centres.T).max(axis=1) + one.radius  # m, how far it stretches each way
+    ball = agglomerate(str(files / "ball.ply"), 1.0, 8, 0.0125)
+    directions = np.random.default_rng(1).normal(size=(500, 3))
+    directions /= np.linalg.norm(directions, axis=1)[:, None]
+    reach = (directions @ ball.centres.T).max(axis=1) + ball.radius  # m, extent in each direction
     assert reach.max() < 0.5 * EDGE * 1.001
     assert reach.min() > 0.5 * EDGE * 0.97
 
 
 def test_spheres_of_one_body_never_touch(files):
-    """They overlap by a fifth; a free body yet keeps its momentum, rotation and energy."""
+    """The spheres overlap by a fifth; a free body still keeps its angular momentum and energy."""
     free = build(
         [body(files / "l.obj", radius=0.0125, angular_velocity=[3.0, 2.0, 1.0])], gravity=NOTHING
     )
@@ -117,22 +125,22 @@ def test_spheres_of_one_body_never_touch(files):
 
 
 def test_a_ball_and_a_cube_of_spheres_come_to_lie_and_are_borne(files):
-    stuff = {"a": material(youngs_modulus=1e7, restitution=0.2, friction=0.4)}
+    materials = {"a": material(youngs_modulus=1e7, restitution=0.2, friction=0.4)}
     bodies = [body(files / "ball.ply", origin=[0.0, 0.0, 0.0755])]
     bodies += [body(files / "cube.stl", scale=1e-3, origin=[0.16, 0.0, 0.0755])]
-    pile = build(bodies, stuff, planes=[FLOOR], contact_forces=True, impact_speed=0.5)
+    pile = build(bodies, materials, planes=[FLOOR], contact_forces=True, impact_speed=0.5)
     run(pile, 0.3)
-    given = outputs_of(pile)
-    assert given["motion.position"][1, 2] == pytest.approx(0.075, abs=2e-4)
-    assert np.abs(given["motion.velocity"]).max() < 1e-4
-    np.testing.assert_allclose(given["contact.force"][:2, 2], 9.81 * pile.mass, rtol=1e-3)
-    np.testing.assert_allclose(given["contact.force"].sum(axis=0), 0.0, atol=1e-9)
+    outputs = outputs_of(pile)
+    assert outputs["motion.position"][1, 2] == pytest.approx(0.075, abs=2e-4)
+    assert np.abs(outputs["motion.velocity"]).max() < 1e-4
+    np.testing.assert_allclose(outputs["contact.force"][:2, 2], 9.81 * pile.mass, rtol=1e-3)
+    np.testing.assert_allclose(outputs["contact.force"].sum(axis=0), 0.0, atol=1e-9)
 
 
 def test_an_agglomerate_is_sampled_as_the_shape_in_its_file(files):
     ball = build([body(files / "ball.ply")])
-    asked = {"spacing": 0.02, "depth": 1.0, "inset": 0.01, "mirror": 1.0, "dimensions": 3.0}
-    samples = ball.sample({f"motion.{key}": np.array([value]) for key, value in asked.items()})
+    request = {"spacing": 0.02, "depth": 1.0, "inset": 0.01, "mirror": 1.0, "dimensions": 3.0}
+    samples = ball.sample({f"motion.{key}": np.array([value]) for key, value in request.items()})
     volume = ball.mass[0] / body(files / "ball.ply")["density"]
     assert samples["motion.volume"].sum() == pytest.approx(volume, rel=1e-12)
     np.testing.assert_allclose(samples["motion.arm"].mean(axis=0), 0.0, atol=1e-3)
@@ -149,7 +157,7 @@ def test_what_is_wrong_with_a_file_is_told(files):
     (files / "text.npy").write_text("no array here")
     np.save(files / "flat.npy", np.ones((3, 3)))
     np.save(files / "none.npy", np.zeros((3, 3, 3)))
-    wrong = {
+    wrong_bodies = {
         "bodies: file none.stl must lie beside the scene; in its folder": body("none.stl"),
         "must be a closed surface": body(files / "open.stl"),
         "found 3 edges of 11 triangles without a partner": body(files / "open.stl"),
@@ -169,19 +177,19 @@ def test_what_is_wrong_with_a_file_is_told(files):
         ),
         "bodies.0.agglomerate.dim should be greater than or equal to 2": body("x", 1),
     }  # fmt: skip
-    for sentence, given in wrong.items():
-        assert sentence in " ".join(mistakes([given])), (sentence, mistakes([given]))
+    for sentence, wrong_body in wrong_bodies.items():
+        assert sentence in " ".join(mistakes([wrong_body])), (sentence, mistakes([wrong_body]))
 
 
 def test_a_file_is_looked_for_in_the_scenes_folder_only(files, monkeypatch):
-    elsewhere = files / "elsewhere"
-    elsewhere.mkdir()
+    other_folder = files / "elsewhere"
+    other_folder.mkdir()
     scene = {"bodies": [body("ball.ply")], "materials": {"a": material()}}
-    found, wrong = read(DemBodiesParams, scene, "bodies", files)
-    assert not wrong and found.bodies[0].file == str(files / "ball.ply")
+    parsed, errors = read(DemBodiesParams, scene, "bodies", files)
+    assert not errors and parsed.bodies[0].file == str(files / "ball.ply")
     monkeypatch.chdir(files)
     monkeypatch.syspath_prepend(files)
-    assert "must lie beside the scene" in read(DemBodiesParams, scene, "bodies", elsewhere)[1][0]
+    assert "must lie beside the scene" in read(DemBodiesParams, scene, "bodies", other_folder)[1][0]
 
 
 def test_bodies_that_start_in_one_another_are_refused(files):

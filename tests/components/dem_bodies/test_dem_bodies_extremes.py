@@ -1,4 +1,4 @@
-"""Stiff, fast, crowded and lost bodies: stable, or ended with a reason."""
+"""Stiff, fast, crowded and lost bodies: the run stays stable or ends with an error."""
 
 import math
 import time
@@ -17,11 +17,11 @@ STIFF = [3.0e9, 6.5e10, 2.1e11]  # Pa: plastic, glass, steel
 RADIUS = 0.05  # m
 
 
-def dropped(young, speed, restitution, **given):
+def dropped_ball(young, speed, restitution, **settings):
     """A ball that is about to touch the floor, without weight."""
     body = sphere([0.0, 0.0, RADIUS + 1e-6], 2 * RADIUS, velocity=[0.0, 0.0, -speed])
-    stuff = {"a": material(youngs_modulus=young, restitution=restitution)}
-    return build([body], stuff, gravity=NOTHING, planes=[FLOOR], impact_speed=speed, **given)
+    materials = {"a": material(youngs_modulus=young, restitution=restitution)}
+    return build([body], materials, gravity=NOTHING, planes=[FLOOR], impact_speed=speed, **settings)
 
 
 def hertz_depth(ball, young, speed, share=1.0):
@@ -37,7 +37,7 @@ def hertz_depth(ball, young, speed, share=1.0):
 @pytest.mark.parametrize("young", STIFF)
 @pytest.mark.parametrize("speed", [1.0, 20.0])
 def test_overlap_is_hertzs_up_to_steel_and_20_metres_per_second(young, speed):
-    ball = dropped(young, speed, 1.0)
+    ball = dropped_ball(young, speed, 1.0)
     depth, deepest = hertz_depth(ball, young, speed), [0.0]
     start, energies = energy(ball), []
 
@@ -47,14 +47,14 @@ def test_overlap_is_hertzs_up_to_steel_and_20_metres_per_second(young, speed):
 
     run(ball, 4.0 * depth / speed, watch)
     assert max(deepest) == pytest.approx(depth, rel=2e-3)
-    assert max(energies) < start * (1.0 + 1e-3)  # of a step's error; it does not stay
+    assert max(energies) < start * (1.0 + 1e-3)  # a temporary error of the time step
     assert energies[-1] == pytest.approx(start, rel=2e-4)
 
 
 @pytest.mark.parametrize("young", STIFF)
 @pytest.mark.parametrize("speed", [1.0, 20.0])
 def test_energy_never_grows_where_contacts_damp(young, speed):
-    ball = dropped(young, speed, 0.6)
+    ball = dropped_ball(young, speed, 0.6)
     energies = [energy(ball)]
     run(
         ball, 5.0 * hertz_depth(ball, young, speed) / speed, lambda _: energies.append(energy(ball))
@@ -66,21 +66,21 @@ def test_energy_never_grows_where_contacts_damp(young, speed):
 
 @pytest.mark.parametrize("young", STIFF)
 def test_the_step_is_the_stated_share_of_the_quickest_impact(young):
-    """That is of two balls, whether or not there is a second one."""
-    ball = dropped(young, 20.0, 1.0)
+    """The quickest impact is that of two balls, even if the scene has only one."""
+    ball = dropped_ball(young, 20.0, 1.0)
     duration = DURATION * hertz_depth(ball, young, 20.0, 0.5) / 20.0
     steps = []
     run(ball, 1.2 * duration, lambda _: steps.append(ball.stable_dt()))
     assert min(steps) == pytest.approx(duration / 40, rel=1e-2)
 
 
-@pytest.mark.parametrize("turned", [[1.0, 0.0, 0.0, 0.0], about([1, -1, 0], 0.9553166)])
-def test_a_steel_cube_dropped_at_20_metres_per_second_only_loses_energy(turned):
+@pytest.mark.parametrize("orientation", [[1.0, 0.0, 0.0, 0.0], about([1, -1, 0], 0.9553166)])
+def test_a_steel_cube_dropped_at_20_metres_per_second_only_loses_energy(orientation):
     """On its face, and on its corner."""
-    high = 0.0751 if turned[0] == 1.0 else 0.1301
-    body = box([0.0, 0.0, high], orientation=turned, velocity=[0.0, 0.0, -20.0])
-    stuff = {"a": material(youngs_modulus=2.1e11, restitution=0.6)}
-    cube = build([body], stuff, gravity=NOTHING, planes=[FLOOR], impact_speed=20.0)
+    height = 0.0751 if orientation[0] == 1.0 else 0.1301
+    body = box([0.0, 0.0, height], orientation=orientation, velocity=[0.0, 0.0, -20.0])
+    materials = {"a": material(youngs_modulus=2.1e11, restitution=0.6)}
+    cube = build([body], materials, gravity=NOTHING, planes=[FLOOR], impact_speed=20.0)
     energies = [energy(cube)]
     run(cube, 2e-3, lambda _: energies.append(energy(cube)))
     assert outputs_of(cube)["motion.velocity"][0, 2] == pytest.approx(12.0, rel=5e-2)
@@ -89,9 +89,9 @@ def test_a_steel_cube_dropped_at_20_metres_per_second_only_loses_energy(turned):
 
 def test_an_impact_too_hard_for_hertz_is_refused():
     """A plastic cube at 20 m/s sinks in by half the radius of its corners."""
-    stuff = {"a": material(youngs_modulus=3e9, restitution=0.6)}
+    materials = {"a": material(youngs_modulus=3e9, restitution=0.6)}
     body = box([0.0, 0.0, 0.0751], velocity=[0.0, 0.0, -20.0])
-    cube = build([body], stuff, planes=[FLOOR], impact_speed=20.0)
+    cube = build([body], materials, planes=[FLOOR], impact_speed=20.0)
     with pytest.raises(
         StepError, match=r"body 0 with a plane is 0\.5.*Increase youngs_modulus or edge_radius"
     ):
@@ -99,12 +99,12 @@ def test_an_impact_too_hard_for_hertz_is_refused():
 
 
 def swing(young, restitution, step):
-    """How fast a ball that lies on the floor and is nudged becomes; `step` in 1/ω of its contact.
+    """Growth of the speed of a ball that is nudged on the floor; `step` in 1/ω of its contact.
 
     Returns the largest speed within 400 steps over that of the nudge, and ζ.
     """
-    stuff = {"a": material(youngs_modulus=young, restitution=restitution, friction=0.0)}
-    ball = build([sphere([0.0, 0.0, RADIUS], 2 * RADIUS)], stuff, planes=[FLOOR])
+    materials = {"a": material(youngs_modulus=young, restitution=restitution, friction=0.0)}
+    ball = build([sphere([0.0, 0.0, RADIUS], 2 * RADIUS)], materials, planes=[FLOOR])
     modulus, ζ = ball.model.material_pairs[0, 0, 0], ball.limit.damping
     weight = 9.81 * ball.mass[0]
     depth = (0.75 * weight / (modulus * math.sqrt(RADIUS))) ** (2.0 / 3.0)
@@ -129,48 +129,48 @@ def test_the_limit_of_the_step_is_where_it_is_predicted(young, restitution):
 
 
 def test_many_dampers_on_one_body_are_stable():
-    """A slab lies on 64 spheres of its own, strongly damped, and is borne with its weight."""
-    places = [[0.03 * i, 0.03 * j, 0.0] for i in range(8) for j in range(8)]
-    slab = {"shape": "spheres", "centres": places, "radii": [0.0125] * 64, "material": "a"}
+    """A slab of 64 strongly damped spheres lies on the floor, which carries its weight."""
+    centres = [[0.03 * i, 0.03 * j, 0.0] for i in range(8) for j in range(8)]
+    slab = {"shape": "spheres", "centres": centres, "radii": [0.0125] * 64, "material": "a"}
     slab |= {"density": 800.0, "origin": [-0.105, -0.105, 0.0126]}
-    stuff = {"a": material(youngs_modulus=1e7, restitution=0.05)}
-    body = build([slab], stuff, planes=[FLOOR], impact_speed=0.5, contact_forces=True)
+    materials = {"a": material(youngs_modulus=1e7, restitution=0.05)}
+    body = build([slab], materials, planes=[FLOOR], impact_speed=0.5, contact_forces=True)
     run(body, 0.3)
     assert outputs_of(body)["contact.force"][0, 2] == pytest.approx(9.81 * body.mass[0], rel=1e-6)
     assert np.abs(outputs_of(body)["motion.velocity"]).max() < 1e-9
 
 
 def test_damped_balls_in_a_heap_come_to_rest():
-    """Each has up to twelve dampers on it, every one of which would be stable alone."""
+    """Each ball has up to twelve dampers; each damper alone would be stable."""
     walls = [([0.0, 0.0, 0.0], [1.0, 0.0, 0.0]), ([0.0, 0.0, 0.0], [0.0, 1.0, 0.0])]
     walls += [([0.041, 0.0, 0.0], [-1.0, 0.0, 0.0]), ([0.0, 0.041, 0.0], [0.0, -1.0, 0.0])]
     planes = [FLOOR] + [{"point": p, "normal": n, "material": "a"} for p, n in walls]
     copies = {"number": [4, 4, 8], "spacing": [0.0101] * 3, "scatter": 2e-5}
     ball = sphere([0.0055, 0.0055, 0.006], 0.01, copies=copies)
-    stuff = {"a": material(youngs_modulus=2e6, restitution=0.05, friction=0.3)}
-    heap = build([ball], stuff, planes=planes, impact_speed=0.5)
+    materials = {"a": material(youngs_modulus=2e6, restitution=0.05, friction=0.3)}
+    heap = build([ball], materials, planes=planes, impact_speed=0.5)
     run(heap, 0.4)
     assert np.median(np.linalg.norm(outputs_of(heap)["motion.velocity"], axis=1)) < 1e-5
 
 
 def test_a_damped_stack_of_cubes_stands_still():
     bodies = [box([0.0, 0.0, 0.075 + 0.15 * k]) for k in range(4)]
-    stuff = {"a": material(youngs_modulus=3e9, restitution=0.05, friction=0.4)}
-    stack = build(bodies, stuff, planes=[FLOOR], impact_speed=0.1)
+    materials = {"a": material(youngs_modulus=3e9, restitution=0.05, friction=0.4)}
+    stack = build(bodies, materials, planes=[FLOOR], impact_speed=0.1)
     run(stack, 0.3)
     assert np.abs(outputs_of(stack)["motion.velocity"]).max() < 1e-6
 
 
-def flight(size, **given):
-    """Steps and lists of a box that tumbles for 0.2 s above the floor, and seconds they take."""
-    turning = {"velocity": [0.3, 0.0, 0.0], "angular_velocity": [1.0, 2.0, 0.5]}
-    high = box([0.0, 0.0, 0.6 * np.linalg.norm(size) + 0.2], size, **turning, **given)
-    began = time.perf_counter()
-    scene = build([high], planes=[FLOOR])
-    lists, steps, renew = [], [], scene.lists.renew
-    scene.lists.renew = lambda state: (lists.append(1), renew(state))
+def flight(size, **properties):
+    """Steps and listings of a box that tumbles above the floor for 0.2 s, and their wall time."""
+    motion = {"velocity": [0.3, 0.0, 0.0], "angular_velocity": [1.0, 2.0, 0.5]}
+    body = box([0.0, 0.0, 0.6 * np.linalg.norm(size) + 0.2], size, **motion, **properties)
+    start = time.perf_counter()
+    scene = build([body], planes=[FLOOR])
+    listings, steps, renew = [], [], scene.lists.renew
+    scene.lists.renew = lambda state: (listings.append(1), renew(state))
     run(scene, 0.2, steps.append)
-    return len(steps), len(lists), time.perf_counter() - began
+    return len(steps), len(listings), time.perf_counter() - start
 
 
 @pytest.mark.parametrize("sharp", [1e-2, 1e-4, 1e-6])
@@ -179,41 +179,41 @@ def test_a_sharp_box_flies_in_no_more_steps_than_a_round_one(sharp):
 
     Its corners are 1.045 times as far from its centre, and move so much faster.
     """
-    steps, lists, _ = flight((0.1, 0.1, 0.1))
-    found = flight((0.1, 0.1, 0.1), edge_radius=0.1 * sharp)
-    assert found[0] <= 1.1 * steps and found[1] <= 1.045 * lists
+    steps, listings, _ = flight((0.1, 0.1, 0.1))
+    sharp_flight = flight((0.1, 0.1, 0.1), edge_radius=0.1 * sharp)
+    assert sharp_flight[0] <= 1.1 * steps and sharp_flight[1] <= 1.045 * listings
 
 
-@pytest.mark.parametrize("thin", [100, 500, 1000])
-def test_a_thin_plate_flies_in_no_more_steps_than_a_thick_one(thin):
-    """Of the same mass. Its listing scans no cells where nothing is."""
-    steps, lists, _ = flight((5.0, 5.0, 0.5))
-    found = flight((5.0, 5.0, 5.0 / thin), density=80.0 * thin)
-    assert found[0] <= 1.2 * steps and found[1] <= 1.2 * lists
-    assert found[2] < 5.0
+@pytest.mark.parametrize("slenderness", [100, 500, 1000])
+def test_a_thin_plate_flies_in_no_more_steps_than_a_thick_one(slenderness):
+    """Both have the same mass. The contact search skips empty cells."""
+    steps, listings, _ = flight((5.0, 5.0, 0.5))
+    thin_flight = flight((5.0, 5.0, 5.0 / slenderness), density=80.0 * slenderness)
+    assert thin_flight[0] <= 1.2 * steps and thin_flight[1] <= 1.2 * listings
+    assert thin_flight[2] < 5.0
 
 
 def test_a_plate_of_a_thousandth_of_its_length_comes_to_lie_under_balls():
     plate = box([0.0, 0.0, 0.0006], (1.0, 1.0, 0.001), density=2000.0)
     balls = [sphere([x, y, 0.0112], density=100.0) for x in (-0.4, 0.4) for y in (-0.4, 0.4)]
-    stuff = {"a": material(youngs_modulus=2e11, restitution=0.2)}
-    given = {"planes": [FLOOR], "contact_forces": True, "impact_speed": 0.05}
-    scene = build([plate, *balls], stuff, **given)
+    materials = {"a": material(youngs_modulus=2e11, restitution=0.2)}
+    settings = {"planes": [FLOOR], "contact_forces": True, "impact_speed": 0.05}
+    scene = build([plate, *balls], materials, **settings)
     run(scene, 0.1)
     weight = 9.81 * scene.mass.sum()
     assert outputs_of(scene)["contact.force"][-1, 2] == pytest.approx(-weight, rel=1e-3)
 
 
 def test_a_body_that_leaves_disturbs_nobody():
-    """One flies off at 1e5 m/s, far beyond all cells; the other's bits stay the same."""
-    stays = sphere([0.0, 0.0, 0.06], 0.1)
-    found = []
+    """One body leaves all cells at 1e5 m/s; the other body's state is the same to the bit."""
+    resting = sphere([0.0, 0.0, 0.06], 0.1)
+    outputs = []
     for others in ([], [sphere([9.0, 0.0, 0.5], 0.1, velocity=[1e5, 0.0, 1e5])]):
-        scene = build([stays, *others], planes=[FLOOR])
+        scene = build([resting, *others], planes=[FLOOR])
         run(scene, 0.1, dt=1e-4)
-        found.append({key: array[0].copy() for key, array in outputs_of(scene).items()})
-    for key in found[0]:
-        np.testing.assert_array_equal(found[0][key], found[1][key], err_msg=key)
+        outputs.append({key: array[0].copy() for key, array in outputs_of(scene).items()})
+    for key in outputs[0]:
+        np.testing.assert_array_equal(outputs[0][key], outputs[1][key], err_msg=key)
     assert outputs_of(scene)["motion.position"][1, 0] == pytest.approx(1e4 + 9.0)
 
 

@@ -15,16 +15,16 @@ def slope(angle):
     return [G * math.sin(angle), 0.0, -G * math.cos(angle)]
 
 
-def resting(angle, μ):
-    stuff = {"a": material(youngs_modulus=1e7, friction=μ)}
+def block_on_slope(angle, μ):
+    materials = {"a": material(youngs_modulus=1e7, friction=μ)}
     return build(
-        [box([0.0, 0.0, 0.075])], stuff, gravity=slope(angle), planes=[FLOOR], impact_speed=0.5
+        [box([0.0, 0.0, 0.075])], materials, gravity=slope(angle), planes=[FLOOR], impact_speed=0.5
     )
 
 
 def test_block_rests_on_a_slope_without_creep():
     μ = 0.45
-    cube = resting(0.9 * math.atan(μ), μ)
+    cube = block_on_slope(0.9 * math.atan(μ), μ)
     run(cube, 0.5)
     start = outputs_of(cube)["motion.position"][0]
     run(cube, 2.0)
@@ -33,12 +33,12 @@ def test_block_rests_on_a_slope_without_creep():
 
 def test_block_slides_on_a_steep_slope():
     μ, angle = 0.3, math.radians(30.0)
-    cube = resting(angle, μ)
+    cube = block_on_slope(angle, μ)
     run(cube, 0.1)
     start = outputs_of(cube)["motion.velocity"][0, 0]
     run(cube, 0.4)
-    found = (outputs_of(cube)["motion.velocity"][0, 0] - start) / 0.4
-    assert found == pytest.approx(G * (math.sin(angle) - μ * math.cos(angle)), rel=5e-3)
+    acceleration = (outputs_of(cube)["motion.velocity"][0, 0] - start) / 0.4
+    assert acceleration == pytest.approx(G * (math.sin(angle) - μ * math.cos(angle)), rel=5e-3)
 
 
 def test_sliding_sphere_comes_to_roll():
@@ -47,17 +47,19 @@ def test_sliding_sphere_comes_to_roll():
         [sphere([0.0, 0.0, 0.05], 0.1, velocity=[v0, 0.0, 0.0])],
         {"a": material(youngs_modulus=1e9, friction=μ)}, planes=[FLOOR], impact_speed=0.2,
     )  # fmt: skip
-    rolling = 2.0 * v0 / (7.0 * μ * G)
-    run(ball, 0.5 * rolling)
+    rolling_time = 2.0 * v0 / (7.0 * μ * G)
+    run(ball, 0.5 * rolling_time)
     assert outputs_of(ball)["motion.velocity"][0, 0] == pytest.approx(
-        v0 - μ * G * rolling / 2, rel=2e-3
+        v0 - μ * G * rolling_time / 2, rel=2e-3
     )
-    run(ball, 0.5 * rolling)
+    run(ball, 0.5 * rolling_time)
     assert outputs_of(ball)["motion.velocity"][0, 0] == pytest.approx(5.0 / 7.0 * v0, rel=2e-3)
     run(ball, 0.1)
-    given = outputs_of(ball)
-    assert given["motion.velocity"][0, 0] == pytest.approx(5.0 / 7.0 * v0, rel=2e-3)
-    assert given["motion.angular_velocity"][0, 1] * 0.05 == pytest.approx(5.0 / 7.0 * v0, rel=2e-3)
+    outputs = outputs_of(ball)
+    assert outputs["motion.velocity"][0, 0] == pytest.approx(5.0 / 7.0 * v0, rel=2e-3)
+    assert outputs["motion.angular_velocity"][0, 1] * 0.05 == pytest.approx(
+        5.0 / 7.0 * v0, rel=2e-3
+    )
 
 
 def test_sphere_rolls_down_a_slope():
@@ -68,8 +70,8 @@ def test_sphere_rolls_down_a_slope():
         gravity=slope(angle), planes=[FLOOR], impact_speed=0.2,
     )  # fmt: skip
     run(ball, 0.3)
-    found = outputs_of(ball)["motion.velocity"][0, 0] / 0.3
-    assert found == pytest.approx(5.0 / 7.0 * G * math.sin(angle), rel=5e-3)
+    acceleration = outputs_of(ball)["motion.velocity"][0, 0] / 0.3
+    assert acceleration == pytest.approx(5.0 / 7.0 * G * math.sin(angle), rel=5e-3)
 
 
 def test_stacked_cubes_stand_still():
@@ -84,15 +86,15 @@ def test_stacked_cubes_stand_still():
 
 
 def test_cubes_stacked_crosswise_stand_still():
-    """No corner of the upper cube is over the lower one's top: crossing edges bear it."""
-    turned = about([0.0, 0.0, 1.0], math.pi / 4)
-    bodies = [box([0.0, 0.0, 0.075]), box([0.0, 0.0, 0.225], orientation=turned)]
-    stuff = {"a": material(youngs_modulus=1e8, friction=0.4)}
-    cubes = build(bodies, stuff, planes=[FLOOR], impact_speed=0.5)
+    """No corner of the upper cube lies above the lower cube: the crossing edges carry it."""
+    turn = about([0.0, 0.0, 1.0], math.pi / 4)
+    bodies = [box([0.0, 0.0, 0.075]), box([0.0, 0.0, 0.225], orientation=turn)]
+    materials = {"a": material(youngs_modulus=1e8, friction=0.4)}
+    cubes = build(bodies, materials, planes=[FLOOR], impact_speed=0.5)
     run(cubes, 0.5)
-    given = outputs_of(cubes)
-    np.testing.assert_allclose(given["motion.position"][:, 2], [0.075, 0.225], atol=5e-4)
-    assert np.abs(given["motion.velocity"]).max() < 1e-5
+    outputs = outputs_of(cubes)
+    np.testing.assert_allclose(outputs["motion.position"][:, 2], [0.075, 0.225], atol=5e-4)
+    assert np.abs(outputs["motion.velocity"]).max() < 1e-5
 
 
 def test_tumbling_pile_gains_no_energy():
@@ -102,12 +104,12 @@ def test_tumbling_pile_gains_no_energy():
     pile = build(
         bodies, {"a": material(youngs_modulus=1e9, friction=0.4)}, planes=[FLOOR], impact_speed=3.0
     )
-    start, last, rises = energy(pile), energy(pile), []
+    start, last_energy, rises = energy(pile), energy(pile), []
 
     def watch(_):
-        nonlocal last
-        rises.append(energy(pile) - last)
-        last = energy(pile)
+        nonlocal last_energy
+        rises.append(energy(pile) - last_energy)
+        last_energy = energy(pile)
 
     run(pile, 0.8, watch)
     assert energy(pile) + pile.accumulated.dissipated == pytest.approx(start, rel=1e-5)
@@ -117,14 +119,14 @@ def test_tumbling_pile_gains_no_energy():
 
 def test_friction_follows_the_pair():
     planes = [FLOOR | {"material": "b"}]
-    stuff = {
+    materials = {
         "a": material(youngs_modulus=1e7, friction=0.9),
         "b": material(youngs_modulus=1e7, friction=0.8),
     }
     laws = [{"between": ["a", "b"], "friction": 0.1}]
     cube = build(
         [box([0.0, 0.0, 0.075])],
-        stuff,
+        materials,
         planes=planes,
         pairs=laws,
         gravity=slope(0.3),

@@ -7,7 +7,7 @@ from dem_scenes import FLOOR, box, build, disc, mistakes, sphere
 from quintet.components.dem_bodies.gauges import groups_of
 
 NO_GRAVITY = [0.0, 0.0, 0.0]
-DEEP = 0.02 - 2e-9  # m apart: spheres of 0.02 m that touch, within the rounding of a scene
+DEEP = 0.02 - 2e-9  # m, distance at which spheres of 0.02 m touch, within the rounding of a scene
 FIELDS = frozenset({"front_gauge.position", "front_gauge.share"})
 
 
@@ -15,9 +15,9 @@ def row(*places, z=0.0):
     return [sphere((x, 0.0, z)) for x in places]
 
 
-def front(bodies, **given):
+def front(bodies, **settings):
     """Position [m] of the front, and the share of the bodies behind it."""
-    fields = build(bodies, front_gauge="x", gravity=NO_GRAVITY, **given).give(FIELDS)
+    fields = build(bodies, front_gauge="x", gravity=NO_GRAVITY, **settings).give(FIELDS)
     return float(fields["front_gauge.position"][0]), float(fields["front_gauge.share"][0])
 
 
@@ -47,10 +47,10 @@ def test_without_contacts_the_front_is_that_of_one_body():
 
 def test_groups_are_those_of_a_chain_in_any_order():
     random = np.random.default_rng(3)
-    names = random.permutation(1000)
-    chain = np.column_stack([names[:-1], names[1:]])[np.arange(999) != 600]
+    numbers = random.permutation(1000)
+    chain = np.column_stack([numbers[:-1], numbers[1:]])[np.arange(999) != 600]
     groups = groups_of(1000, random.permutation(chain))
-    first, second = names[:601], names[601:]
+    first, second = numbers[:601], numbers[601:]
     assert set(groups[first]) == {first.min()} and set(groups[second]) == {second.min()}
 
 
@@ -59,5 +59,7 @@ def test_without_a_gauge_there_is_no_port_of_it():
 
 
 def test_across_the_plane_of_two_dimensions_there_is_no_front():
-    said = mistakes([disc((0.0, 0.0, 0.0))], dimensions=2, front_gauge="y")
-    assert "front_gauge must be x or z in two dimensions" in said[0] and "found y" in said[0]
+    messages = mistakes([disc((0.0, 0.0, 0.0))], dimensions=2, front_gauge="y")
+    assert (
+        "front_gauge must be x or z in two dimensions" in messages[0] and "found y" in messages[0]
+    )

@@ -1,4 +1,4 @@
-"""Many spheres: threads, sorting, contacts one by one, and what pairs of materials say."""
+"""Many spheres: threads, sorting, single contacts, and laws of material pairs."""
 
 import numpy as np
 import pytest
@@ -14,7 +14,7 @@ from quintet.interfaces.component import outputs_of
 from quintet.interfaces.params import read
 
 
-def crowd(seed=0, count=9000, others=(), threads=1, **given):
+def crowd(seed=0, count=9000, others=(), threads=1, **changes):
     """Spheres on a loose lattice in random order and motion, above a corner."""
     random = np.random.default_rng(seed)
     size = int(np.ceil(count ** (1 / 3)))
@@ -25,11 +25,11 @@ def crowd(seed=0, count=9000, others=(), threads=1, **given):
         for x, v in zip((places + 0.5) * 0.0101, random.normal(size=places.shape), strict=True)
     ]
     normals = np.eye(3).tolist()
-    stuff = {"a": material(youngs_modulus=5e6, friction=0.5, **given)}
+    materials = {"a": material(youngs_modulus=5e6, friction=0.5, **changes)}
     planes = [FLOOR | {"normal": n} for n in normals]
     return build(
         [*bodies, *others],
-        stuff,
+        materials,
         planes=planes,
         impact_speed=2.0,
         contact_forces=True,
@@ -38,31 +38,31 @@ def crowd(seed=0, count=9000, others=(), threads=1, **given):
 
 
 @pytest.fixture(scope="module")
-def mixed():
-    """A crowd that has met and been listed again, its rows far from the bodies' order."""
+def mixed_crowd():
+    """A crowd after collisions and new listings; its rows are not in the bodies' order."""
     scene = crowd()
     run(scene, 4e-3, dt=2e-5)
     return scene
 
 
-def assert_same_bits(one, other):
-    for name, array in one.save().items():
-        np.testing.assert_array_equal(array, other.save()[name], err_msg=name)
+def assert_same_bits(first, second):
+    for name, array in first.save().items():
+        np.testing.assert_array_equal(array, second.save()[name], err_msg=name)
 
 
-def test_threads_change_no_bit(mixed):
+def test_threads_change_no_bit(mixed_crowd):
     shared = crowd(threads=2)
-    assert shared.stepping.team.size == 2 and mixed.stepping.team.size == 1
+    assert shared.stepping.team.size == 2 and mixed_crowd.stepping.team.size == 1
     run(shared, 4e-3, dt=2e-5)
-    assert_same_bits(mixed, shared)
+    assert_same_bits(mixed_crowd, shared)
 
 
 def test_threads_change_no_bit_of_what_resists_rolling_beside_a_box():
-    """Blocks of rows then wait for the box before they are kicked."""
-    above = box([0.1, 0.1, 0.263], (0.2, 0.2, 0.1), velocity=[0.0, 0.0, -2.0])
+    """With a box, blocks of rows wait for it before their velocities are updated."""
+    falling_box = box([0.1, 0.1, 0.263], (0.2, 0.2, 0.1), velocity=[0.0, 0.0, -2.0])
     scenes = []
     for threads in (1, 2):
-        scenes.append(crowd(threads=threads, others=(above,), rolling_friction=0.2))
+        scenes.append(crowd(threads=threads, others=(falling_box,), rolling_friction=0.2))
         run(scenes[-1], 1.2e-3, dt=2e-5)
     assert [scene.stepping.team.size for scene in scenes] == [1, 2]
     lists = scenes[0].lists
@@ -70,62 +70,64 @@ def test_threads_change_no_bit_of_what_resists_rolling_beside_a_box():
     assert_same_bits(*scenes)
 
 
-def test_energy_and_contacts_of_many_are_as_summed_one_by_one(mixed):
-    found, m = mixed.contact_points(), mixed.count
-    i, j = found["bodies"].T
+def test_energy_and_contacts_of_many_are_as_summed_one_by_one(mixed_crowd):
+    contacts, m = mixed_crowd.contact_points(), mixed_crowd.count
+    i, j = contacts["bodies"].T
     assert len(i) > 1000 and (j == m).sum() > 10  # also on planes
     forces = np.zeros((m + 1, 3))
-    np.add.at(forces, i, found["force"])
-    np.add.at(forces, j, -found["force"])
+    np.add.at(forces, i, contacts["force"])
+    np.add.at(forces, j, -contacts["force"])
     scale = np.abs(forces).max()
-    assert (mixed.state.body[:m] != np.arange(m)).mean() > 0.9
+    assert (mixed_crowd.state.body[:m] != np.arange(m)).mean() > 0.9
     np.testing.assert_allclose(
-        forces[mixed.state.body], mixed.state.contact_load[:, :3], atol=1e-12 * scale
+        forces[mixed_crowd.state.body], mixed_crowd.state.contact_load[:, :3], atol=1e-12 * scale
     )
-    x = outputs_of(mixed)["motion.position"]
+    x = outputs_of(mixed_crowd)["motion.position"]
     distance = np.linalg.norm(x[i[j < m]] - x[j[j < m]], axis=1)
-    np.testing.assert_allclose(found["depth"][j < m], 0.01 - distance, atol=1e-12)
+    np.testing.assert_allclose(contacts["depth"][j < m], 0.01 - distance, atol=1e-12)
 
 
-def test_deepest_of_many_is_the_one_that_is_told(mixed):
-    found, report = mixed.contact_points(), mixed.state.report
-    k = int(np.argmax(found["depth"]))
-    assert report[DEEPEST] == pytest.approx(found["depth"][k] / 0.005, rel=1e-6)
-    i, j = deepest_pair(mixed.state, mixed.lists.balls, mixed.lists.bodies)
-    assert [i, min(j, mixed.count)] == found["bodies"][k].tolist()
+def test_deepest_of_many_is_the_one_that_is_told(mixed_crowd):
+    contacts, report = mixed_crowd.contact_points(), mixed_crowd.state.report
+    k = int(np.argmax(contacts["depth"]))
+    assert report[DEEPEST] == pytest.approx(contacts["depth"][k] / 0.005, rel=1e-6)
+    i, j = deepest_pair(mixed_crowd.state, mixed_crowd.lists.balls, mixed_crowd.lists.bodies)
+    assert [i, min(j, mixed_crowd.count)] == contacts["bodies"][k].tolist()
 
 
-def test_all_that_touch_are_listed(mixed):
-    """Against a search of its own, by a tree."""
+def test_all_that_touch_are_listed(mixed_crowd):
+    """Compared with an independent search by a k-d tree."""
     from scipy.spatial import KDTree
 
-    x = outputs_of(mixed)["motion.position"]
+    x = outputs_of(mixed_crowd)["motion.position"]
     expected = {tuple(sorted(pair)) for pair in KDTree(x).query_pairs(0.01 * (1.0 - 1e-9))}
-    found = mixed.contact_points()["bodies"]
-    assert {tuple(sorted(pair)) for pair in found[found[:, 1] < mixed.count].tolist()} == expected
+    listed = mixed_crowd.contact_points()["bodies"]
+    assert {
+        tuple(sorted(pair)) for pair in listed[listed[:, 1] < mixed_crowd.count].tolist()
+    } == expected
     assert len(expected) > 1000
 
 
-def test_many_go_on_with_the_same_bits_when_loaded(mixed):
-    kept = mixed.save()
-    run(mixed, 4e-4, dt=2e-5)
-    first = mixed.save()
+def test_many_go_on_with_the_same_bits_when_loaded(mixed_crowd):
+    saved = mixed_crowd.save()
+    run(mixed_crowd, 4e-4, dt=2e-5)
+    expected = mixed_crowd.save()
     fresh = crowd(seed=5)
-    fresh.load(kept)
+    fresh.load(saved)
     run(fresh, 4e-4, dt=2e-5)
     for name, array in fresh.save().items():
-        np.testing.assert_array_equal(array, first[name], err_msg=name)
-    mixed.load(kept)
+        np.testing.assert_array_equal(array, expected[name], err_msg=name)
+    mixed_crowd.load(saved)
 
 
 def test_listing_anew_changes_no_contact():
-    """The same spheres, listed again in every step: history is carried, also of swapped rows."""
+    """Listing in every step keeps the contact history, also that of swapped rows."""
     ends = []
-    for often in (False, True):
+    for every_step in (False, True):
         scene = crowd(count=600, rolling_friction=0.1, restitution=0.8)
         start = energy(scene)
         for _ in range(200):
-            if often:
+            if every_step:
                 scene.state.listed_centre[:] = 1e9
             scene.step(2e-5)
         assert energy(scene) + scene.accumulated.dissipated == pytest.approx(start, rel=1e-6)
@@ -133,21 +135,21 @@ def test_listing_anew_changes_no_contact():
     np.testing.assert_allclose(ends[0], ends[1], atol=1e-9)
 
 
-def pushed_pile(along):
-    """A box that slides on four spheres; the floor, without friction, may pass by along y."""
+def pushed_pile(speed_y):
+    """A box that slides on four spheres; all move along y over a frictionless floor."""
     places = [(-0.11, -0.11), (-0.107, 0.105), (0.104, -0.106), (0.11, 0.107)]
-    bodies = [box([0.0, 0.0, 0.26], (0.3, 0.3, 0.1), velocity=[0.2, along, 0.0])]
-    bodies += [sphere([x, y, 0.105], 0.21, velocity=[0.0, along, 0.0]) for x, y in places]
-    stuff = {
+    bodies = [box([0.0, 0.0, 0.26], (0.3, 0.3, 0.1), velocity=[0.2, speed_y, 0.0])]
+    bodies += [sphere([x, y, 0.105], 0.21, velocity=[0.0, speed_y, 0.0]) for x, y in places]
+    materials = {
         "a": material(youngs_modulus=1e7, friction=0.5),
         "ice": material(youngs_modulus=1e7, friction=0.0),
     }
     floor = FLOOR | {"material": "ice"}
-    return build(bodies, stuff, planes=[floor], impact_speed=0.5)
+    return build(bodies, materials, planes=[floor], impact_speed=0.5)
 
 
 def test_rows_that_change_places_keep_their_contacts_with_boxes():
-    """The same pile at rest and as it moves through the cells by which rows are sorted."""
+    """The same pile at rest, and moving through the cells that sort the rows."""
     still, moving = pushed_pile(0.0), pushed_pile(2.0)
     orders, dt = set(), 0.5 * still.stable_dt()
     steps = int(0.3 / dt)
@@ -156,23 +158,28 @@ def test_rows_that_change_places_keep_their_contacts_with_boxes():
         moving.step(dt)
         orders.add(tuple(moving.state.body.tolist()))
     assert len(orders) > 1
-    passed = outputs_of(moving)["motion.position"] - [0.0, 2.0 * steps * dt, 0.0]
-    np.testing.assert_allclose(passed, outputs_of(still)["motion.position"], atol=1e-7)
+    positions = outputs_of(moving)["motion.position"] - [0.0, 2.0 * steps * dt, 0.0]
+    np.testing.assert_allclose(positions, outputs_of(still)["motion.position"], atol=1e-7)
     assert outputs_of(still)["motion.velocity"][0, 0] < 0.19  # friction slowed the box
-    turned = [outputs_of(scene)["motion.angular_velocity"] for scene in (still, moving)]
-    np.testing.assert_allclose(*turned, atol=1e-5)
+    spins = [outputs_of(scene)["motion.angular_velocity"] for scene in (still, moving)]
+    np.testing.assert_allclose(*spins, atol=1e-5)
 
 
 def test_contact_forces_of_a_block_at_rest_are_its_weight():
-    stuff, given = {"a": material(youngs_modulus=1e7)}, {"planes": [FLOOR], "contact_forces": True}
-    cube = build([box([0.0, 0.0, 0.075])], stuff, impact_speed=0.5, **given)
+    materials, settings = (
+        {"a": material(youngs_modulus=1e7)},
+        {"planes": [FLOOR], "contact_forces": True},
+    )
+    cube = build([box([0.0, 0.0, 0.075])], materials, impact_speed=0.5, **settings)
     run(cube, 1.5)
-    found, weight = cube.contact_points(), 9.81 * cube.mass[0]
-    assert len(found["depth"]) == 4 and (found["depth"] > 0.0).all()
-    np.testing.assert_array_equal(found["bodies"], np.tile([0, 1], (4, 1)))
-    np.testing.assert_allclose(found["force"].sum(axis=0), [0.0, 0.0, weight], atol=1e-5 * weight)
-    np.testing.assert_array_equal(found["force"].sum(axis=0), cube.state.contact_load[0, :3])
-    np.testing.assert_allclose(found["point"][:, 2], -0.5 * found["depth"], atol=1e-9)
+    contacts, weight = cube.contact_points(), 9.81 * cube.mass[0]
+    assert len(contacts["depth"]) == 4 and (contacts["depth"] > 0.0).all()
+    np.testing.assert_array_equal(contacts["bodies"], np.tile([0, 1], (4, 1)))
+    np.testing.assert_allclose(
+        contacts["force"].sum(axis=0), [0.0, 0.0, weight], atol=1e-5 * weight
+    )
+    np.testing.assert_array_equal(contacts["force"].sum(axis=0), cube.state.contact_load[0, :3])
+    np.testing.assert_allclose(contacts["point"][:, 2], -0.5 * contacts["depth"], atol=1e-9)
     np.testing.assert_allclose(cube.state.contact_load[1, :3], -cube.state.contact_load[0, :3])
 
 
@@ -189,15 +196,19 @@ def test_spheres_and_a_box_stand_on_each_other():
 
 
 def test_restitution_follows_the_pair():
-    stuff = {
+    materials = {
         "a": material(youngs_modulus=1e9, restitution=0.9),
         "b": material(youngs_modulus=1e9, restitution=0.5),
     }
     laws = [{"between": ["b", "a"], "restitution": 0.8}]
-    given = {"planes": [FLOOR | {"material": "b"}], "gravity": [0.0, 0.0, 0.0], "impact_speed": 1.0}
+    settings = {
+        "planes": [FLOOR | {"material": "b"}],
+        "gravity": [0.0, 0.0, 0.0],
+        "impact_speed": 1.0,
+    }
     for pairs, expected in (([], 0.5), (laws, 0.8)):
         body = sphere([0.0, 0.0, 0.0101], velocity=[0.0, 0.0, -1.0])
-        ball = build([body], stuff, pairs=pairs, **given)
+        ball = build([body], materials, pairs=pairs, **settings)
         run(ball, 1e-3)
         assert outputs_of(ball)["motion.velocity"][0, 2] == pytest.approx(expected, rel=5e-3)
 
@@ -217,15 +228,15 @@ def test_restitution_follows_the_pair():
     ],
 )
 def test_wrong_pairs_are_refused(pairs, sentence):
-    stuff = {"a": material(), "b": material()}
-    found = mistakes([sphere([0.0, 0.0, 0.0])], materials=stuff, pairs=pairs)
-    assert sentence in " ".join(found)
+    materials = {"a": material(), "b": material()}
+    messages = mistakes([sphere([0.0, 0.0, 0.0])], materials=materials, pairs=pairs)
+    assert sentence in " ".join(messages)
 
 
 def test_benchmark_touches_its_six_neighbours():
     assert {case.unit for case in MANIFEST.cases()} == {"sphere-steps/s"}
-    params, wrong = read(DemBodiesParams, lattice(6, 6, 6), "bodies")
-    assert not wrong
+    params, errors = read(DemBodiesParams, lattice(6, 6, 6), "bodies")
+    assert not errors
     scene = DemBodies(params)
     for _ in range(20):
         scene.step(scene.stable_dt())

@@ -1,4 +1,4 @@
-"""Free motion, loads, energy, and the promises of the contract."""
+"""Free motion, loads, energy, and the rules of the component interface."""
 
 import subprocess
 import sys
@@ -68,20 +68,20 @@ def test_load_acts_as_an_impulse():
 
 
 def test_energy_balance_closes_and_contacts_only_take():
-    stuff = {"a": material(youngs_modulus=1e9, friction=0.3, restitution=0.7)}
+    materials = {"a": material(youngs_modulus=1e9, friction=0.3, restitution=0.7)}
     body = box([0.0, 0.0, 0.2], velocity=[0.5, 0.0, -1.0], angular_velocity=[2.0, 1.0, 0.0])
-    scene = build([body], stuff, planes=[FLOOR])
+    scene = build([body], materials, planes=[FLOOR])
     scene.take({"load.force": np.array([[0.0, 1.0, 0.0]]), "load.torque": np.zeros((1, 3))})
-    start, taken = energy(scene), [0.0]
-    run(scene, 0.4, lambda _: taken.append(scene.accumulated.dissipated))
-    given, dissipated = scene.accumulated.load_work, scene.accumulated.dissipated
-    assert energy(scene) + dissipated - given == pytest.approx(start, rel=1e-9)
-    assert np.diff(taken).min() > -1e-9 * start
+    start, losses = energy(scene), [0.0]
+    run(scene, 0.4, lambda _: losses.append(scene.accumulated.dissipated))
+    load_work, dissipated = scene.accumulated.load_work, scene.accumulated.dissipated
+    assert energy(scene) + dissipated - load_work == pytest.approx(start, rel=1e-9)
+    assert np.diff(losses).min() > -1e-9 * start
     assert dissipated > 0.2 * start
 
 
 def test_contact_forces_are_what_changes_momentum():
-    """To rounding, of each body and of the planes together, at whatever steps."""
+    """To rounding, for each body and for all planes together, at any step length."""
     bodies = [box([0.0, 0.0, 0.0751]), box([0.03, 0.0, 0.2252], angular_velocity=[0.0, 2.0, 0.0])]
     scene = build(bodies, planes=[FLOOR], contact_forces=True)
     force, torque, time = np.zeros((3, 3)), np.zeros((3, 3)), 0.0
@@ -89,11 +89,14 @@ def test_contact_forces_are_what_changes_momentum():
     while time < 0.2:
         dt = scene.stable_dt()
         scene.step(dt)
-        given, time = outputs_of(scene), time + dt
-        force, torque = force + dt * given["contact.force"], torque + dt * given["contact.torque"]
-    gained = scene.mass[:, None] * (given["motion.velocity"] - start["motion.velocity"])
-    gained[:, 2] += 9.81 * time * scene.mass
-    np.testing.assert_allclose(force[:2], gained, atol=1e-12 * np.abs(gained).max())
+        outputs, time = outputs_of(scene), time + dt
+        force, torque = (
+            force + dt * outputs["contact.force"],
+            torque + dt * outputs["contact.torque"],
+        )
+    impulse = scene.mass[:, None] * (outputs["motion.velocity"] - start["motion.velocity"])
+    impulse[:, 2] += 9.81 * time * scene.mass
+    np.testing.assert_allclose(force[:2], impulse, atol=1e-12 * np.abs(impulse).max())
     np.testing.assert_allclose(
         torque[:2], (scene.state.angular_momentum - momentum)[:2], atol=1e-12
     )
@@ -103,9 +106,9 @@ def test_contact_forces_are_what_changes_momentum():
 
 def elastic_error(steps):
     """Largest energy error of a slender box that bounces without loss."""
-    stuff = {"a": material(youngs_modulus=1e10, friction=0.0, restitution=1.0)}
+    materials = {"a": material(youngs_modulus=1e10, friction=0.0, restitution=1.0)}
     body = box([0.0, 0.0, 0.3], SIZE, velocity=[0.0, 0.0, -1.0], angular_velocity=[2.0, 1.0, 0.0])
-    scene = build([body], stuff, planes=[FLOOR], steps_per_contact=steps, longest_step=1e-4)
+    scene = build([body], materials, planes=[FLOOR], steps_per_contact=steps, longest_step=1e-4)
     start, errors = energy(scene), [0.0]
     run(scene, 0.3, lambda _: errors.append(abs(energy(scene) / start - 1.0)))
     assert scene.state.velocity[0, 2] > -3.0  # it bounced; free, it would fall at 3.9 m/s
@@ -119,20 +122,20 @@ def test_elastic_bounces_keep_energy_to_second_order():
 
 
 def test_two_half_steps_are_one_to_second_order():
-    """On one and the same damped contact that slips nowhere: local error dt³."""
-    stuff = {"a": material(youngs_modulus=1e6, friction=5.0, restitution=0.4)}
+    """For one damped contact without slip: local error dt³."""
+    materials = {"a": material(youngs_modulus=1e6, friction=5.0, restitution=0.4)}
     differences = []
     for dt in (2e-4, 1e-4):
-        found = []
+        ends = []
         for pieces in (1, 2):
             body = sphere([0.0, 0.0, 0.05], 0.1, velocity=[0.3, 0.0, -0.5])
-            ball = build([body], stuff, planes=[FLOOR])
+            ball = build([body], materials, planes=[FLOOR])
             run(ball, 2e-3, dt=5e-5)
             for _ in range(pieces):
                 ball.step(dt / pieces)
-            given = outputs_of(ball)
-            found.append(np.append(given["motion.velocity"][0], given["motion.position"][0]))
-        differences.append(np.abs(found[0] - found[1]).max())
+            outputs = outputs_of(ball)
+            ends.append(np.append(outputs["motion.velocity"][0], outputs["motion.position"][0]))
+        differences.append(np.abs(ends[0] - ends[1]).max())
     assert differences[0] / differences[1] > 6.0
 
 
@@ -141,7 +144,7 @@ def test_union_of_spheres_counts_overlaps_once():
     volume, centre, inertia = measure_union(
         (((0.0, 0.0, 0.0), (distance, 0.0, 0.0)), (radius, radius))
     )
-    h = radius - 0.5 * distance  # two caps of this height are counted twice
+    h = radius - 0.5 * distance  # two caps of this height belong to both spheres
     exact = 8.0 / 3.0 * np.pi - 2.0 * np.pi * h**2 * (3.0 * radius - h) / 3.0
     assert volume == pytest.approx(exact, rel=5e-3)
     np.testing.assert_allclose(centre, [0.5 * distance, 0.0, 0.0], atol=1e-9)
@@ -156,29 +159,29 @@ def test_union_of_spheres_counts_overlaps_once():
 def test_clump_of_one_sphere_is_that_sphere_and_moves_alike():
     clump = {"shape": "spheres", "centres": [[0.0, 0.0, 0.0]], "radii": [0.05], "material": "a"}
     clump |= {"density": 2500.0, "origin": [0.0, 0.0, 0.06]}
-    found = []
+    results = []
     for body in (clump, sphere([0.0, 0.0, 0.06], 0.1)):
         scene = build([body | {"velocity": [1.0, 0.0, 0.0]}], planes=[FLOOR])
         run(scene, 0.1, dt=1e-5)
-        found.append((scene.mass[0], outputs_of(scene)["motion.velocity"][0]))
-    assert found[0][0] == pytest.approx(found[1][0], rel=1e-2)
-    np.testing.assert_allclose(found[0][1], found[1][1], rtol=2e-2, atol=1e-3)
+        results.append((scene.mass[0], outputs_of(scene)["motion.velocity"][0]))
+    assert results[0][0] == pytest.approx(results[1][0], rel=1e-2)
+    np.testing.assert_allclose(results[0][1], results[1][1], rtol=2e-2, atol=1e-3)
 
 
 AGAIN = """
 import sys
 import numpy as np
 sys.path.insert(0, sys.argv[2])
-from test_dem_bodies_motion import thrown
+from test_dem_bodies_motion import toppling_cubes
 from dem_scenes import run
-scene = thrown()
+scene = toppling_cubes()
 scene.load(dict(np.load(sys.argv[1])))
 run(scene, 0.05)
 np.savez(sys.argv[1], **scene.save())
 """
 
 
-def thrown():
+def toppling_cubes():
     """Cubes that are pushed over."""
     scene = three_cubes()
     scene.take({"load.force": np.array([NOTHING, [30.0, 5.0, 0.0], [5.0, 20.0, 0.0]])})
@@ -186,28 +189,28 @@ def thrown():
 
 
 def test_loaded_in_a_fresh_process_goes_on_with_the_same_bits(tmp_path):
-    scene, file = thrown(), tmp_path / "state.npz"
+    scene, file = toppling_cubes(), tmp_path / "state.npz"
     run(scene, 0.2)
     np.savez(file, **scene.save())
     run(scene, 0.05)
     folder = str(__file__).rsplit("/", 1)[0]
     subprocess.run([sys.executable, "-c", AGAIN, str(file), folder], check=True)
-    again = np.load(file)
+    continued = np.load(file)
     for name, array in scene.save().items():
-        np.testing.assert_array_equal(array, again[name], err_msg=name)
+        np.testing.assert_array_equal(array, continued[name], err_msg=name)
     assert np.abs(scene.state.angular_velocity).max() > 0.1
 
 
 def test_rewinding_gives_the_same_bits():
-    scene = thrown()
+    scene = toppling_cubes()
     run(scene, 0.01)
-    kept = scene.save()
+    saved = scene.save()
     run(scene, 0.02)
-    first = scene.save()
-    scene.load(kept)
+    expected = scene.save()
+    scene.load(saved)
     run(scene, 0.02)
     for name, array in scene.save().items():
-        np.testing.assert_array_equal(array, first[name], err_msg=name)
+        np.testing.assert_array_equal(array, expected[name], err_msg=name)
 
 
 def test_outputs_are_copies_and_views_have_faces():
@@ -227,8 +230,8 @@ def test_planes_are_shown_where_they_hold_bodies():
         {"point": [-0.1, 0.0, 0.0], "normal": [2.0, 0.0, 0.0], "material": "a"},
         {"point": [0.2, 0.0, 0.0], "normal": [-1.0, 0.0, 0.0], "material": "a"},
     ]
-    shown = build([sphere([0.0, 0.0, 1.0])], planes=[FLOOR, *sides]).walls()
-    floor, left, right = (shown["points"][cell[cell >= 0]] for cell in shown["cells"])
+    walls = build([sphere([0.0, 0.0, 1.0])], planes=[FLOOR, *sides]).walls()
+    floor, left, right = (walls["points"][cell[cell >= 0]] for cell in walls["cells"])
     assert floor[:, 0].min() == pytest.approx(-0.1) and floor[:, 0].max() == pytest.approx(0.2)
     assert np.allclose(left[:, 0], -0.1) and np.allclose(right[:, 0], 0.2)
     assert left[:, 2].min() == pytest.approx(0.0, abs=1e-9) and not np.abs(floor[:, 2]).any()
@@ -238,19 +241,19 @@ def test_planes_are_shown_where_they_hold_bodies():
 def test_planes_are_shown_where_bodies_were_and_where_they_have_come_to():
     """A sphere that flew 50 m along a floor is still above it, and so is its start."""
     floor = np.array([[0.0, 0.0, 1.0, 0.0]])
-    boxes, reached = [], []
+    extents, plane_x = [], []
     for x in (0.0, 50.0):
         position = np.array([[x, 0.0, 1.0], [np.nan] * 3])  # the last row is no body
-        boxes.append(extent(SimpleNamespace(position=position, motion=np.full((2, 4), 0.5))))
-        reached.append(planes_view(floor, boxes)["points"][:, 0])
-    assert reached[0].max() < 50.0 < reached[1].max()
-    assert reached[1].min() <= reached[0].min() < 0.0
+        extents.append(extent(SimpleNamespace(position=position, motion=np.full((2, 4), 0.5))))
+        plane_x.append(planes_view(floor, extents)["points"][:, 0])
+    assert plane_x[0].max() < 50.0 < plane_x[1].max()
+    assert plane_x[1].min() <= plane_x[0].min() < 0.0
 
 
 def test_planes_look_the_same_after_a_state_is_loaded():
-    """They depend on the start and the present, not on when somebody looked."""
-    thrown = sphere([0.0, 0.0, 1.0]) | {"velocity": [9.0, 0.0, 5.0]}
-    watched, resumed = (build([thrown], planes=[FLOOR]) for _ in range(2))
+    """The view of planes depends on the start and the present state, not on earlier views."""
+    ball = sphere([0.0, 0.0, 1.0]) | {"velocity": [9.0, 0.0, 5.0]}
+    watched, resumed = (build([ball], planes=[FLOOR]) for _ in range(2))
     run(watched, 0.3, lambda _: watched.walls())
     resumed.load(watched.save())
     assert np.array_equal(resumed.walls()["points"], watched.walls()["points"])
@@ -265,7 +268,7 @@ def test_steps_are_long_while_nothing_can_touch():
 
 @pytest.mark.parametrize("body", [sphere(NOTHING, 0.1), box(NOTHING, SIZE)])
 def test_a_lone_spinning_body_takes_the_longest_step(body):
-    """However fast it moves; only what turns about an axis that moves is resolved."""
+    """At any speed: only rotation about a moving axis needs shorter steps."""
     lone = build([body | {"angular_velocity": [5.0, 20.0, 3.0], "velocity": [9.0, 0.0, 0.0]}])
     steps, start = [], lone.totals()
     run(lone, 0.2, lambda _: steps.append(lone.stable_dt()))
@@ -276,8 +279,8 @@ def test_a_lone_spinning_body_takes_the_longest_step(body):
 
 
 def test_a_body_that_spins_far_above_the_floor_takes_the_longest_step_until_it_is_near():
-    spun = {"angular_velocity": [0.0, 0.0, 60.0]}
-    body = build([box([0.0, 0.0, 1.0], **spun)], planes=[FLOOR])
+    spin = {"angular_velocity": [0.0, 0.0, 60.0]}
+    body = build([box([0.0, 0.0, 1.0], **spin)], planes=[FLOOR])
     steps, gaps = [], []
 
     def watch(_):
@@ -291,7 +294,7 @@ def test_a_body_that_spins_far_above_the_floor_takes_the_longest_step_until_it_i
 
 
 def test_a_slender_body_that_spins_fast_keeps_its_energy():
-    """About the axis between the longest and the shortest, which is not stable."""
+    """The body spins about its intermediate axis, which is unstable."""
     lone = build([box(NOTHING, SIZE, angular_velocity=[0.1, 300.0, 0.1])], gravity=NOTHING)
     energies = []
     run(lone, 1.0, lambda _: energies.append(energy(lone)))

@@ -1,4 +1,4 @@
-"""What is refused before anything starts, and that refusing needs no solver."""
+"""Scenes that are refused before a run; the checks need no solver."""
 
 import subprocess
 import sys
@@ -20,7 +20,7 @@ TWO = {"number": [2, 1, 1], "spacing": [0.01] * 3}
 
 
 @pytest.mark.parametrize(
-    ("bodies", "given", "sentence"),
+    ("bodies", "settings", "sentence"),
     [
         ([box([0, 0, 0], material="b")], {}, "bodies[0].material must be one of the materials a"),
         ([box([0, 0, 0])], {"planes": [FLOOR | {"material": "b"}]}, "planes[0].material"),
@@ -48,12 +48,12 @@ TWO = {"number": [2, 1, 1], "spacing": [0.01] * 3}
         ([sphere([0, 0, 0], copies=TWO)], {}, "must not overlap"),
     ],
 )
-def test_wrong_scenes_are_refused(bodies, given, sentence):
-    assert sentence in " ".join(mistakes(bodies, **given))
+def test_wrong_scenes_are_refused(bodies, settings, sentence):
+    assert sentence in " ".join(mistakes(bodies, **settings))
 
 
 @pytest.mark.parametrize(
-    ("bodies", "given", "sentence"),
+    ("bodies", "settings", "sentence"),
     [
         ([], {"speed": 2.0}, "bodies.speed is now impact_speed. Rename it."),
         ([], {"step": 1e-5}, "bodies.step is now fixed_step. Rename it."),
@@ -72,59 +72,59 @@ def test_wrong_scenes_are_refused(bodies, given, sentence):
         ),
     ],
 )
-def test_old_keys_are_answered_with_the_new_ones(bodies, given, sentence):
-    assert sentence in " ".join(mistakes(bodies, **given))
+def test_old_keys_are_answered_with_the_new_ones(bodies, settings, sentence):
+    assert sentence in " ".join(mistakes(bodies, **settings))
 
 
 def test_touching_is_allowed_at_every_orientation():
-    turned = about([0.0, 0.0, 1.0], 0.3)
-    bodies = [box([0, 0, 0.075], orientation=turned), box([0, 0, 0.225])]
+    turn = about([0.0, 0.0, 1.0], 0.3)
+    bodies = [box([0, 0, 0.075], orientation=turn), box([0, 0, 0.225])]
     bodies += [sphere([0, 0, 0.31]), box([0.15, 0, 0.225])]
     assert params(bodies, planes=[FLOOR]).bodies[3].density == 800.0
 
 
 def test_copies_stand_on_a_lattice_and_scatter_the_same_way_each_time():
     lattice = {"number": [2, 1, 3], "spacing": [0.1, 0.2, 0.3]}
-    one = sphere([1.0, 2.0, 3.0], copies=lattice)
-    plain = np.array([body.position for body in params([one]).bodies])
+    ball = sphere([1.0, 2.0, 3.0], copies=lattice)
+    plain = np.array([body.position for body in params([ball]).bodies])
     expected = [[1.0 + x, 2.0, 3.0 + z] for x in (0.0, 0.1) for z in (0.0, 0.3, 0.6)]
     np.testing.assert_allclose(plain, expected)
-    scattered = [lattice | {"scatter": 0.01, "seed": seed} for seed in (1, 1, 2)]
-    loose = [list(params([one | {"copies": copies}]).bodies) for copies in scattered]
+    lattices = [lattice | {"scatter": 0.01, "seed": seed} for seed in (1, 1, 2)]
+    loose = [list(params([ball | {"copies": copies}]).bodies) for copies in lattices]
     assert loose[0] == loose[1] != loose[2]
-    moved = np.array([body.position for body in loose[0]]) - expected
-    assert 0.005 < np.abs(moved).max() <= 0.01
+    offsets = np.array([body.position for body in loose[0]]) - expected
+    assert 0.005 < np.abs(offsets).max() <= 0.01
 
 
-def ports(given):
-    """Ports taken and given, without what they say of ports that the scene does not ask for."""
-    sides = MANIFEST.ports(given)
+def ports(scene):
+    """Input and output ports, without their notes on ports that the scene leaves out."""
+    sides = MANIFEST.ports(scene)
     return tuple(tuple(replace(port, lacks=()) for port in side) for side in sides)
 
 
 def test_contact_forces_are_a_port_only_if_asked_for():
-    given = params([box([0.0, 0.0, 0.0])], contact_forces=True)
-    assert ports(given) == ((LOAD,), (MOTION, CONTACT))
+    scene = params([box([0.0, 0.0, 0.0])], contact_forces=True)
+    assert ports(scene) == ((LOAD,), (MOTION, CONTACT))
 
 
 def test_manifest_needs_no_solver():
     code = "import sys, quintet.components.dem_bodies; assert 'numba' not in sys.modules"
     subprocess.run([sys.executable, "-c", code], check=True)
-    given = params([box([0.0, 0.0, 0.0]), box([0.0, 0.0, 0.2])])
-    assert ports(given) == ((LOAD,), (MOTION,))
-    plan = MANIFEST.plan(given)
+    scene = params([box([0.0, 0.0, 0.0]), box([0.0, 0.0, 0.2])])
+    assert ports(scene) == ((LOAD,), (MOTION,))
+    plan = MANIFEST.plan(scene)
     assert plan.items == 2 and 1e-6 < plan.dt < 1e-3
 
 
 @pytest.mark.parametrize("speed", [1.0, 20.0])
 def test_steps_of_a_body_that_nothing_can_touch_are_planned_as_they_are(speed):
     ball = sphere([0.0, 0.0, 0.0], velocity=[speed, 0.0, 0.0])
-    given = params(
+    scene = params(
         [ball], {"a": material(youngs_modulus=1e9)}, gravity=[0.0, 0.0, 0.0], impact_speed=speed
     )
-    lone, steps = DemBodies(given), []
+    lone, steps = DemBodies(scene), []
     run(lone, 0.1, watch=steps.append)
-    assert MANIFEST.plan(given).dt == pytest.approx(0.1 / len(steps), rel=0.5)
+    assert MANIFEST.plan(scene).dt == pytest.approx(0.1 / len(steps), rel=0.5)
 
 
 def test_forces_of_contacts_are_refused_beside_faces_that_they_would_lack():

@@ -1,4 +1,4 @@
-"""Bodies shared out among real MPI ranks: the same bits on any number of them."""
+"""Bodies on several MPI ranks: the same bits on any number of ranks."""
 
 from pathlib import Path
 
@@ -32,7 +32,7 @@ def test_a_state_of_two_ranks_goes_on_with_three_as_one_goes_on(name, resumed):
 
 
 def test_spheres_touch_each_other_and_planes_in_these_runs(folder):
-    """So that histories of contacts, and loads on rows of other ranks, are compared."""
+    """Otherwise contact histories and loads on rows of other ranks would not be compared."""
     state = np.load(folder / "heap-2.npz")
     touching = state["state balls.history"][3] > 0.0
     on_planes = state["state balls.partner"] >= len(state["state body"])
@@ -57,13 +57,13 @@ def test_the_body_that_fails_is_named(ranks, folder):
 
 def test_rows_that_are_not_kept_are_zero_and_take_no_memory():
     arrays = SparseArrays()
-    before = resident()
+    memory_before = resident()
     motion, numbers = arrays.zeros((1_000_000, 16)), arrays.zeros((1_000_000,), np.int64)
-    assert not motion[::10_000].any() and resident() - before < 1e6
+    assert not motion[::10_000].any() and resident() - memory_before < 1e6
     motion[400_000:600_000], numbers[400_000:600_000] = 1.0, 2
-    written = resident() - before
-    assert written > 0.9 * 200_000 * (16 + 1) * 8
+    memory_written = resident() - memory_before
+    assert memory_written > 0.9 * 200_000 * (16 + 1) * 8
     arrays.keep(450_000, 460_000)
     assert (motion[450_000:460_000] == 1.0).all() and (numbers[450_000:460_000] == 2).all()
     assert not motion[:440_000].any() and not numbers[470_000:].any()
-    assert resident() - before < 0.2 * written
+    assert resident() - memory_before < 0.2 * memory_written

@@ -24,14 +24,14 @@ SHARP = [1e-2, 1e-4, 1e-6]
 UP = [0.0, 0.0, 1.0]
 
 
-def cubes(sharp, *places, **given):
-    return [box(place, edge_radius=sharp * EDGE, **given) for place in places]
+def cubes(sharp, *places, **properties):
+    return [box(place, edge_radius=sharp * EDGE, **properties) for place in places]
 
 
-def settled(bodies, end, watch=None, **given):
+def settle(bodies, end, watch=None, **settings):
     """Let bodies settle; return their motion and the number of steps."""
     steps = []
-    scene = build(bodies, {"a": PLASTIC}, planes=[FLOOR], contact_forces=True, **given)
+    scene = build(bodies, {"a": PLASTIC}, planes=[FLOOR], contact_forces=True, **settings)
     run(scene, end, lambda time: (steps.append(time), watch and watch(scene)))
     return scene, outputs_of(scene), len(steps)
 
@@ -45,10 +45,10 @@ def stack(sharp, turn=0.0, shift=0.0):
 @pytest.mark.parametrize("turn", [0.0, 0.5])
 @pytest.mark.parametrize("sharp", SHARP)
 def test_sharp_cubes_stand_on_one_another_as_blunt_ones_do(sharp, turn):
-    """Also exactly above each other, where a corner is as near to two other faces."""
-    blunt, sharper = settled(stack(0.05, turn), 0.1), settled(stack(sharp, turn), 0.1)
-    found, expected = sharper[1]["motion.position"], blunt[1]["motion.position"]
-    np.testing.assert_allclose(found, expected, atol=2e-6)
+    """Also exactly above each other, where a corner is equally near to two faces."""
+    blunt, sharper = settle(stack(0.05, turn), 0.1), settle(stack(sharp, turn), 0.1)
+    positions, expected = sharper[1]["motion.position"], blunt[1]["motion.position"]
+    np.testing.assert_allclose(positions, expected, atol=2e-6)
     assert np.abs(sharper[1]["motion.velocity"]).max() < 1e-3
     assert sharper[2] < 1.15 * blunt[2]
     weight = 9.81 * sharper[0].mass.sum()
@@ -56,14 +56,14 @@ def test_sharp_cubes_stand_on_one_another_as_blunt_ones_do(sharp, turn):
 
 
 @pytest.mark.parametrize("sharp", SHARP)
-@pytest.mark.parametrize("over", [-0.01, 0.01])
-def test_a_sharp_cube_tips_where_its_centre_is_beyond_the_edge(sharp, over):
-    """And stays where it is within."""
-    bodies = cubes(sharp, [0.0, 0.0, 0.075], [0.075 + over, 0.0, 0.225])
+@pytest.mark.parametrize("overhang", [-0.01, 0.01])
+def test_a_sharp_cube_tips_where_its_centre_is_beyond_the_edge(sharp, overhang):
+    """It stays in place if its centre is above the lower cube."""
+    bodies = cubes(sharp, [0.0, 0.0, 0.075], [0.075 + overhang, 0.0, 0.225])
     bodies[0]["locked"] = ["x", "y", "z", "rotation_x", "rotation_y", "rotation_z"]
-    _, found, _ = settled(bodies, 0.2)
-    turned = 2.0 * np.arcsin(abs(found["motion.orientation"][1, 2]))
-    assert turned > 0.05 if over > 0.0 else turned < 1e-3
+    _, outputs, _ = settle(bodies, 0.2)
+    angle = 2.0 * np.arcsin(abs(outputs["motion.orientation"][1, 2]))
+    assert angle > 0.05 if overhang > 0.0 else angle < 1e-3
 
 
 @pytest.mark.parametrize("sharp", SHARP)
@@ -71,23 +71,23 @@ def test_crossed_sharp_planks_bear_by_their_edges_alone(sharp):
     size = (0.6, 0.1, 0.1)
     lower = box([0.0, 0.0, 0.05], size, edge_radius=0.1 * sharp)
     upper = box([0.0, 0.0, 0.15], size, edge_radius=0.1 * sharp, orientation=about(UP, 1.2))
-    scene, found, _ = settled([lower, upper], 0.2)
-    assert found["motion.position"][1, 2] == pytest.approx(0.15, abs=5e-5)
+    scene, outputs, _ = settle([lower, upper], 0.2)
+    assert outputs["motion.position"][1, 2] == pytest.approx(0.15, abs=5e-5)
     weight = 9.81 * scene.mass[1]
-    assert found["contact.force"][1, 2] == pytest.approx(weight, rel=1e-3)
-    assert np.abs(found["motion.angular_velocity"]).max() < 1e-3
+    assert outputs["contact.force"][1, 2] == pytest.approx(weight, rel=1e-3)
+    assert np.abs(outputs["motion.angular_velocity"]).max() < 1e-3
 
 
 @pytest.mark.parametrize("sharp", SHARP)
 @pytest.mark.parametrize(
-    "turned", [about(UP, 0.0), about([1, -1, 0], 0.9553166), about([1, 0, 0], 0.6)]
+    "orientation", [about(UP, 0.0), about([1, -1, 0], 0.9553166), about([1, 0, 0], 0.6)]
 )
-def test_a_sharp_cube_that_strikes_floor_and_cube_only_loses_energy(sharp, turned):
+def test_a_sharp_cube_that_strikes_floor_and_cube_only_loses_energy(sharp, orientation):
     """On its face, its corner and its edge."""
     bodies = cubes(sharp, [0.0, 0.0, 0.0751], [0.03, 0.02, 0.2802])
-    bodies[1] |= {"orientation": turned, "velocity": [0.0, 0.0, -1.0]}
+    bodies[1] |= {"orientation": orientation, "velocity": [0.0, 0.0, -1.0]}
     energies = []
-    settled(bodies, 0.25, lambda scene: energies.append(energy(scene)))
+    settle(bodies, 0.25, lambda scene: energies.append(energy(scene)))
     assert np.diff(energies).max() < 1e-6 * energies[0]
     assert energies[-1] < 0.95 * energies[0]
 
@@ -95,36 +95,36 @@ def test_a_sharp_cube_that_strikes_floor_and_cube_only_loses_energy(sharp, turne
 @pytest.mark.parametrize("sharp", SHARP)
 def test_a_ball_lies_on_a_sharp_cube(sharp):
     bodies = [*cubes(sharp, [0.0, 0.0, 0.075]), sphere([0.02, 0.0, 0.2001], 0.1)]
-    scene, found, _ = settled(bodies, 0.3)
+    scene, outputs, _ = settle(bodies, 0.3)
     weight = 9.81 * scene.mass[1]
-    assert found["contact.force"][1, 2] == pytest.approx(weight, rel=2e-2)
-    assert found["motion.position"][1, 2] == pytest.approx(0.2, abs=1e-4)
+    assert outputs["contact.force"][1, 2] == pytest.approx(weight, rel=2e-2)
+    assert outputs["motion.position"][1, 2] == pytest.approx(0.2, abs=1e-4)
 
 
-@pytest.mark.parametrize("thin", [10, 100, 1000])
-def test_plates_fall_on_the_floor_and_on_one_another(thin):
+@pytest.mark.parametrize("slenderness", [10, 100, 1000])
+def test_plates_fall_on_the_floor_and_on_one_another(slenderness):
     """5 m across; the thinnest is 5 mm."""
-    thick = 5.0 / thin
+    thick = 5.0 / slenderness
     plates = [
         box([0.0, 0.0, z * thick + gap], (5.0, 5.0, thick)) for z, gap in ((0.5, 1e-3), (1.5, 2e-3))
     ]
     steps = []
     scene = build(plates, {"a": STEEL | {"restitution": 0.3}}, planes=[FLOOR], contact_forces=True)
     run(scene, 0.2, steps.append)
-    found = outputs_of(scene)
-    np.testing.assert_allclose(found["motion.position"][:, 2] / thick, [0.5, 1.5], atol=0.02)
+    outputs = outputs_of(scene)
+    np.testing.assert_allclose(outputs["motion.position"][:, 2] / thick, [0.5, 1.5], atol=0.02)
     weight = 9.81 * scene.mass.sum()
-    assert found["contact.force"][2, 2] == pytest.approx(-weight, rel=0.05)
+    assert outputs["contact.force"][2, 2] == pytest.approx(-weight, rel=0.05)
     assert len(steps) < 20_000
 
 
 @pytest.mark.parametrize("sharp", SHARP)
 def test_sharp_rectangles_stand_in_two_dimensions(sharp):
-    found = []
-    for rounded in (0.05, sharp):
-        bodies = [rectangle([0.0, 0.0, z], edge_radius=rounded * EDGE) for z in (0.075, 0.225)]
-        found.append(settled(bodies, 0.1, dimensions=2)[1]["motion.position"])
-    np.testing.assert_allclose(found[1], found[0], atol=2e-6)
+    positions = []
+    for rounding in (0.05, sharp):
+        bodies = [rectangle([0.0, 0.0, z], edge_radius=rounding * EDGE) for z in (0.075, 0.225)]
+        positions.append(settle(bodies, 0.1, dimensions=2)[1]["motion.position"])
+    np.testing.assert_allclose(positions[1], positions[0], atol=2e-6)
 
 
 def test_a_sharp_rectangle_that_falls_on_its_corner_only_loses_energy():
@@ -133,16 +133,16 @@ def test_a_sharp_rectangle_that_falls_on_its_corner_only_loses_energy():
         body["edge_radius"] = 1e-6 * EDGE
     bodies[1]["orientation"] = about([0, 1, 0], 0.5)
     energies = []
-    settled(bodies, 0.2, lambda scene: energies.append(energy(scene)), dimensions=2)
+    settle(bodies, 0.2, lambda scene: energies.append(energy(scene)), dimensions=2)
     assert np.diff(energies).max() < 1e-6 * energies[0]
 
 
 def test_momentum_is_kept_where_sharp_boxes_meet():
-    given = {"orientation": about([1, 2, 3], 0.8), "angular_velocity": [3.0, -2.0, 1.0]}
+    motion = {"orientation": about([1, 2, 3], 0.8), "angular_velocity": [3.0, -2.0, 1.0]}
     bodies = cubes(1e-6, [0.0, 0.0, 0.0], [0.25, 0.05, 0.03])
-    bodies[1] |= given | {"velocity": [-2.0, 0.0, 0.0]}
-    stuff = {"a": material(youngs_modulus=1e9, friction=0.4)}
-    scene = build(bodies, stuff, gravity=NOTHING)
+    bodies[1] |= motion | {"velocity": [-2.0, 0.0, 0.0]}
+    materials = {"a": material(youngs_modulus=1e9, friction=0.4)}
+    scene = build(bodies, materials, gravity=NOTHING)
     before = scene.totals()
     run(scene, 0.1)
     after = scene.totals()

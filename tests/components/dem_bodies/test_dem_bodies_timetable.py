@@ -38,8 +38,8 @@ def test_a_plane_that_stays_holds_beside_one_that_vanishes():
 
 @pytest.mark.parametrize("shape", ["sphere", "box"])
 def test_a_held_body_is_released_at_its_time(shape):
-    held = {"locked": LOCKED, "released_at": 0.05}
-    body = sphere((0.0, 0.0, 1.0), **held) if shape == "sphere" else box((0.0, 0.0, 1.0), **held)
+    locks = {"locked": LOCKED, "released_at": 0.05}
+    body = sphere((0.0, 0.0, 1.0), **locks) if shape == "sphere" else box((0.0, 0.0, 1.0), **locks)
     solver = build([body])
     assert height(advance(solver, 0.05)) == 1.0
     advance(solver, 0.1)
@@ -62,10 +62,10 @@ def test_a_body_that_turned_evenly_keeps_its_angular_momentum_when_released():
 def test_a_saved_state_goes_on_with_the_same_bits(time):
     bodies = [sphere((0.0, 0.0, 0.01)), box((0.3, 0.0, 1.0), locked=LOCKED, released_at=0.06)]
     solver = advance(build(bodies, planes=[GATE]), time)
-    state, other = solver.save(), build(bodies, planes=[GATE])
-    advance(other, 0.08)  # all has vanished: it comes back
-    other.load(state)
-    ends = [advance(each, 0.1).save() for each in (solver, other)]
+    state, loaded = solver.save(), build(bodies, planes=[GATE])
+    advance(loaded, 0.08)  # all has vanished: it comes back
+    loaded.load(state)
+    ends = [advance(component, 0.1).save() for component in (solver, loaded)]
     assert ends[0].keys() == ends[1].keys()
     assert all(np.array_equal(ends[0][key], ends[1][key]) for key in ends[0])
 
