@@ -1,4 +1,4 @@
-"""What test_lattice_ranks.py runs on several ranks; rank 0 writes what came out."""
+"""Scenes that test_lattice_ranks.py runs on several ranks; rank 0 writes the results."""
 
 import numpy as np
 from solver_run import WORLD, SolverRun
@@ -56,21 +56,21 @@ def params(name):
 
 
 class Run(SolverRun):
-    """A case of a lattice, with a wall whose temperature changes from step to step."""
+    """A lattice with a wall whose temperature changes in every step."""
 
     def build(self):
         return ParticleLattice(params(self.name), Resources(communicator=WORLD))
 
     def inputs(self):
-        warm = np.full(len(self.solver.wall.rows), (1.0 + self.steps % 3) * 1e-4 * UNIT)
-        return {"wall_temperature.temperature": warm}
+        temperatures = np.full(len(self.solver.wall.rows), (1.0 + self.steps % 3) * 1e-4 * UNIT)
+        return {"wall_temperature.temperature": temperatures}
 
     def results(self):
-        """What the base says, after the state that each rank saved was brought back."""
-        saved, reached = self.save(), super().results()
+        """Results of the base class; they must be the same after a saved state is restored."""
+        saved, results = self.save(), super().results()
         self.advance(3)
         self.load(saved)
-        again = super().results()
+        repeated = super().results()
         if WORLD.rank == 0:
-            assert all(again[key].tobytes() == value.tobytes() for key, value in reached.items())
-        return reached
+            assert all(repeated[key].tobytes() == value.tobytes() for key, value in results.items())
+        return results

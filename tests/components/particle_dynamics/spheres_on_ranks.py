@@ -1,4 +1,4 @@
-"""What test_spheres_ranks.py runs on several ranks; rank 0 writes what came out."""
+"""Scenes that test_spheres_ranks.py runs on several ranks; rank 0 writes the results."""
 
 import json
 
@@ -46,7 +46,7 @@ PARAMS = {
     "pile": {**crowd((4, 4, 4), 1.05), "restitution": 0.5, "gravity": [0.0, 0.0, -9.81]},
     LONG: {**crowd((3, 3, 2), 1.2), "restitution": 0.7},
     "row": {"spheres": [*reversed(ROW), STRIKER], "restitution": 0.99},
-    "streams": {  # that are launched one after another and pass through each other
+    "streams": {  # two streams of spheres launched in turn; they pass through each other
         "spheres": [
             {**STREAM, "centre": [0.0, 0.0, 0.0], "velocity": [2.0, 0.05, 0.0]},
             {**STREAM, "centre": [0.205, 0.013, 0.011], "velocity": [-2.0, 0.0, 0.05]},
@@ -70,7 +70,7 @@ PARAMS = {
 
 
 class Run(SolverRun):
-    """A case of spheres under forces, torques and heat that change from step to step."""
+    """Spheres under forces, torques and heat that change in every step."""
 
     def build(self):
         params = TypeAdapter(ParticleSpheresParams).validate_json(json.dumps(PARAMS[self.name]))
@@ -86,11 +86,11 @@ class Run(SolverRun):
         }
 
     def step_length(self):
-        """A step as it comes; far too long in one case."""
+        """The stable step; far too long in one case."""
         return (20.0 if self.name == LONG else 1.0) * min(self.solver.stable_dt(), 2e-3)
 
     def failure(self):
-        """What a step says under a load that is not a number."""
+        """Error message of a step under a load of NaN."""
         load = np.zeros((self.solver.items(), 3))
         load[[3, 7]] = np.nan
         self.solver.take({"load.force": load})

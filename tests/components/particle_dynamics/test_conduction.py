@@ -1,4 +1,4 @@
-"""What random collisions conduct, in theory and in a bar between two baths."""
+"""Heat conduction by random collisions, in theory and in a bar between two baths."""
 
 import math
 
@@ -16,7 +16,7 @@ from quintet.components.particle_dynamics.params import (
 
 A, MASS, TOP, LAYERS = 0.01, 1e-3, 50.0, 10  # m, kg, Hz
 OMEGA = 2.0 * math.pi * TOP
-UNIT = MASS * (A * OMEGA) ** 2  # J; temperatures are in this with k = 1
+UNIT = MASS * (A * OMEGA) ** 2  # J; also the unit of temperature, with k = 1
 
 
 def bath(layer, temperature):
@@ -30,28 +30,30 @@ def bath(layer, temperature):
 def test_fast_collisions_conduct_three_quarters_of_their_rate():
     """κ = 3/4 k λ/a.
 
-    A collision turns the relative velocity into a random direction: on the mean both points have
-    half of their energy afterwards, so that 3/4 k of their difference in temperature goes over.
-    What the bonds conduct between two collisions fades with their rate; at 4 ω it is within the
-    scatter.
+    A collision turns the relative velocity into a random direction. On average both points then
+    have half of their energy, so 3/4 k times their temperature difference is exchanged.
+    The conduction of the bonds falls as collisions become more frequent; at a rate of 4 ω it is
+    within the scatter.
     """
-    rate, warm = 4.0 * OMEGA, 4e-5 * UNIT
-    made = ParticleLattice(
+    rate, temperature = 4.0 * OMEGA, 4e-5 * UNIT
+    solver = ParticleLattice(
         ParticleLatticeParams(
-            lattice=Lattice(cells=(LAYERS - 1, 3, 3), spacing=A, mass=MASS, temperature=warm),
+            lattice=Lattice(
+                cells=(LAYERS - 1, 3, 3), spacing=A, mass=MASS, temperature=temperature
+            ),
             seven_roots=SevenRootForce(top_frequency=TOP),
             boltzmann=1.0,
             collision_rate=rate,
             courant=0.125,
             substeps=1000,
             averages=Averages(begin=4.0, block=2.0),
-            baths=(bath(0, 1.3 * warm), bath(LAYERS - 1, 0.7 * warm)),
+            baths=(bath(0, 1.3 * temperature), bath(LAYERS - 1, 0.7 * temperature)),
         )
     )
     for _ in range(12):
-        made.step(2.0)
-    found = made.give({"points.temperature", "baths.heat_flow"})
-    layers = found["points.temperature"].reshape(LAYERS, 16).mean(axis=1)
+        solver.step(2.0)
+    outputs = solver.give({"points.temperature", "baths.heat_flow"})
+    layers = outputs["points.temperature"].reshape(LAYERS, 16).mean(axis=1)
     slope = -np.polyfit(np.arange(1, LAYERS - 1), layers[1:-1], 1)[0]
-    flow = 0.5 * (found["baths.heat_flow"][0] - found["baths.heat_flow"][1])
+    flow = 0.5 * (outputs["baths.heat_flow"][0] - outputs["baths.heat_flow"][1])
     assert flow / (16 * slope * rate) == pytest.approx(0.75, rel=0.05)

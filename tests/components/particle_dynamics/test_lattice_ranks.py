@@ -1,4 +1,4 @@
-"""A lattice shared out among real MPI ranks: the same bits on any number of them."""
+"""A lattice on several MPI ranks: the same bits on any number of ranks."""
 
 from pathlib import Path
 
@@ -9,7 +9,7 @@ from rank_runs import differences, from_states, from_the_start
 pytestmark = pytest.mark.mpi
 PROGRAM = Path(__file__).with_name("lattice_on_ranks.py")
 NAMES = ("driven", "heated", "periodic", "breaks up")
-STEPS = 45  # with lists made again where points are warm
+STEPS = 45  # enough for new lists in warm lattices
 folder = from_the_start(PROGRAM, NAMES, STEPS)
 resumed = from_states(PROGRAM, NAMES, 12)
 

@@ -1,4 +1,4 @@
-"""Steps of lattices: accuracy, stability, drive, baths, collisions, and what is lost."""
+"""Steps of lattices: accuracy, stability, drive, baths, collisions, and lost points."""
 
 import math
 
@@ -22,14 +22,14 @@ from quintet.components.particle_dynamics.state import TIME, WORK
 from quintet.interfaces.errors import SceneError, StepError
 
 A, MASS, TOP = 0.01, 1e-3, 50.0  # m, kg, Hz
-UNIT = MASS * (A * 2.0 * math.pi * TOP) ** 2  # J; temperatures are in this with k = 1
+UNIT = MASS * (A * 2.0 * math.pi * TOP) ** 2  # J; also the unit of temperature, with k = 1
 
 
-def lattice(cells=(3, 1, 1), **given):
-    keys = {name: given.pop(name) for name in ("periodic", "temperature") if name in given}
+def lattice(cells=(3, 1, 1), **settings):
+    keys = {name: settings.pop(name) for name in ("periodic", "temperature") if name in settings}
     force = {"seven_roots": SevenRootForce(top_frequency=TOP), "boltzmann": 1.0}
-    made = Lattice(cells=cells, spacing=A, mass=MASS, **keys)
-    return ParticleLattice(ParticleLatticeParams(lattice=made, **(force | given)))
+    lattice_params = Lattice(cells=cells, spacing=A, mass=MASS, **keys)
+    return ParticleLattice(ParticleLatticeParams(lattice=lattice_params, **(force | settings)))
 
 
 def bar(
@@ -39,7 +39,7 @@ def bar(
     frequency=50.0,
     mode="relative",
     kind="cut-off",
-    **given,
+    **settings,
 ):
     """The paper's bar: two frozen vertices at one end, a driven pair at the other."""
     n = spacings
@@ -55,152 +55,159 @@ def bar(
             mode=mode,
         ),
         damping=Damping(coefficient=damping * MASS, range=kind),
-        **given,
+        **settings,
     )
 
 
-def run(made, seconds):
-    while made.state.energies[TIME] < seconds * (1.0 - 1e-9):
-        made.step(made.stable_dt())
+def run(solver, seconds):
+    while solver.state.energies[TIME] < seconds * (1.0 - 1e-9):
+        solver.step(solver.stable_dt())
 
 
-def energy(made):
-    return sum(made.budget.energies())
+def energy(solver):
+    return sum(solver.budget.energies())
 
 
 def test_a_driven_and_damped_bar_accounts_for_its_energy_over_15_s():
     """Kinetic + potential + dissipated - work within 1e-3 of the work, at the default step."""
-    made = bar(substeps=200)
+    solver = bar(substeps=200)
     for second in range(1, 16):
-        run(made, second)
-        found = made.give({"energies.audit", "energies.work", "energies.intact"})
-        assert abs(found["energies.audit"][0]) < 1e-3
-    assert found["energies.work"][0] > 10.0 * energy(made) > 0.0
-    assert found["energies.intact"][0] == 1.0
+        run(solver, second)
+        outputs = solver.give({"energies.audit", "energies.work", "energies.intact"})
+        assert abs(outputs["energies.audit"][0]) < 1e-3
+    assert outputs["energies.work"][0] > 10.0 * energy(solver) > 0.0
+    assert outputs["energies.intact"][0] == 1.0
 
 
 def ends_of_a_free_lattice(integrator, step, seconds=0.04):
-    made = lattice((3, 1, 1), temperature=2e-4 * UNIT, integrator=integrator)
+    solver = lattice((3, 1, 1), temperature=2e-4 * UNIT, integrator=integrator)
     for _ in range(round(seconds / step)):
-        made.step(step)
-    return made.state.position / A, energy(made)
+        solver.step(step)
+    return solver.state.position / A, energy(solver)
 
 
 @pytest.mark.parametrize(("integrator", "order"), [("velocity_verlet", 2), ("yoshida", 4)])
 def test_the_error_of_each_integrator_falls_by_its_order(integrator, order):
     exact, _ = ends_of_a_free_lattice("yoshida", 5e-5)
     steps = (8e-4, 4e-4, 2e-4)  # s; 0.25, 0.125, 0.06 over the highest frequency
-    errors = [np.abs(ends_of_a_free_lattice(integrator, one)[0] - exact).max() for one in steps]
-    found = np.log2(np.array(errors[:-1]) / errors[1:])
-    assert found[-1] == pytest.approx(order, abs=0.25)
+    errors = [np.abs(ends_of_a_free_lattice(integrator, step)[0] - exact).max() for step in steps]
+    orders = np.log2(np.array(errors[:-1]) / errors[1:])
+    assert orders[-1] == pytest.approx(order, abs=0.25)
 
 
 def test_a_driven_pair_and_damping_keep_the_second_order():
     def end(step):
-        made = bar(damping=20.0, kind="step")
+        solver = bar(damping=20.0, kind="step")
         for _ in range(round(0.04 / step)):
-            made.step(step)
-        return np.append(made.state.position.ravel() / A, made.state.energies[WORK] / UNIT)
+            solver.step(step)
+        return np.append(solver.state.position.ravel() / A, solver.state.energies[WORK] / UNIT)
 
     exact = end(2.5e-5)
     errors = [np.abs(end(step) - exact).max() for step in (8e-4, 4e-4, 2e-4)]
-    found = np.log2(np.array(errors[:-1]) / errors[1:])
-    assert found[-1] == pytest.approx(2.0, abs=0.25)
+    orders = np.log2(np.array(errors[:-1]) / errors[1:])
+    assert orders[-1] == pytest.approx(2.0, abs=0.25)
 
 
 @pytest.mark.parametrize("integrator", ["velocity_verlet", "yoshida"])
 def test_the_limit_of_the_step_is_that_of_the_highest_frequency(integrator):
-    """Of small motion: stable at 0.95 of it, unstable at 1.05."""
-    made = lattice((3, 1, 1), temperature=1e-14 * UNIT, integrator=integrator)
-    limit = LIMIT[integrator] / made.built.frequency
-    start = float((made.state.velocity**2).sum())
+    """Small motion is stable at 0.95 of the limit and unstable at 1.05."""
+    solver = lattice((3, 1, 1), temperature=1e-14 * UNIT, integrator=integrator)
+    limit = LIMIT[integrator] / solver.built.frequency
+    start = float((solver.state.velocity**2).sum())
     for _ in range(300):
-        made.step(0.95 * limit)
-    assert float((made.state.velocity**2).sum()) < 100.0 * start
-    made = lattice((3, 1, 1), temperature=1e-14 * UNIT, integrator=integrator)
+        solver.step(0.95 * limit)
+    assert float((solver.state.velocity**2).sum()) < 100.0 * start
+    solver = lattice((3, 1, 1), temperature=1e-14 * UNIT, integrator=integrator)
     with pytest.raises(StepError, match="smaller courant"):
         for _ in range(300):
-            made.step(1.05 * limit)
+            solver.step(1.05 * limit)
 
 
 def test_results_depend_on_ratios_only():
     """Twice the frequencies and damping, four times the strength: the same at half the time."""
-    one, other = (
+    slow, fast = (
         bar(),
         bar(frequency=100.0, damping=0.6, seven_roots=SevenRootForce(top_frequency=2.0 * TOP)),
     )
     for _ in range(400):
-        one.step(2e-4)
-        other.step(1e-4)
-    assert one.state.position == pytest.approx(other.state.position, abs=1e-10 * A)
-    hot = [
-        made.give({"points.relative_hotness"})["points.relative_hotness"] for made in (one, other)
+        slow.step(2e-4)
+        fast.step(1e-4)
+    assert slow.state.position == pytest.approx(fast.state.position, abs=1e-10 * A)
+    hotness = [
+        solver.give({"points.relative_hotness"})["points.relative_hotness"]
+        for solver in (slow, fast)
     ]
-    assert hot[0] == pytest.approx(hot[1], abs=1e-9)
+    assert hotness[0] == pytest.approx(hotness[1], abs=1e-9)
 
 
 @pytest.mark.parametrize("mode", ["relative", "symmetric", "point", "partner"])
 def test_the_driven_pair_has_the_distance_that_is_told(mode):
-    made = bar(mode=mode)
-    driven = made.rows.model.driven
-    start = made.built.start
+    solver = bar(mode=mode)
+    driven = solver.rows.model.driven
+    start = solver.built.start
     for _ in range(97):
-        made.step(2e-4)
-    time = made.state.energies[TIME]
-    distance = made.state.position[driven.first, 1] - made.state.position[driven.second, 1]
-    told = A * (1.0 + 0.05 * math.sin(2.0 * math.pi * 50.0 * time))
-    assert distance == pytest.approx(told, rel=1e-13)
-    moved = made.state.position[[driven.first, driven.second], 1]
-    moved -= start[[driven.first, driven.second], 1]
+        solver.step(2e-4)
+    time = solver.state.energies[TIME]
+    distance = solver.state.position[driven.first, 1] - solver.state.position[driven.second, 1]
+    expected_distance = A * (1.0 + 0.05 * math.sin(2.0 * math.pi * 50.0 * time))
+    assert distance == pytest.approx(expected_distance, rel=1e-13)
+    displacement = solver.state.position[[driven.first, driven.second], 1]
+    displacement -= start[[driven.first, driven.second], 1]
     sine = 0.05 * A * math.sin(2.0 * math.pi * 50.0 * time)
     expected = {"symmetric": (0.5, -0.5), "point": (1.0, 0.0), "partner": (0.0, -1.0)}
     if mode in expected:
-        assert moved == pytest.approx(sine * np.array(expected[mode]), abs=1e-13 * A)
+        assert displacement == pytest.approx(sine * np.array(expected[mode]), abs=1e-13 * A)
     else:
-        assert moved.sum() != 0.0  # their mean is free
-    assert abs(made.give({"energies.audit"})["energies.audit"][0]) < 1e-2
-    frozen = made.rows.model.frozen
-    assert (made.state.position[frozen] == start[frozen]).all()
+        assert displacement.sum() != 0.0  # their mean is free
+    assert abs(solver.give({"energies.audit"})["energies.audit"][0]) < 1e-2
+    frozen = solver.rows.model.frozen
+    assert (solver.state.position[frozen] == start[frozen]).all()
 
 
 def test_a_free_lattice_keeps_momentum_and_spin():
-    made = lattice((3, 3, 3), temperature=1e-5 * UNIT)
-    start = made.totals()
-    run(made, 0.2)
-    end = made.totals()
-    size = MASS * np.abs(made.state.velocity).sum()
-    assert np.abs(end.momentum - start.momentum).max() < 1e-13 * size
-    assert np.abs(end.angular_momentum - start.angular_momentum).max() < 1e-12 * size * A
+    solver = lattice((3, 3, 3), temperature=1e-5 * UNIT)
+    start = solver.totals()
+    run(solver, 0.2)
+    end = solver.totals()
+    momentum_scale = MASS * np.abs(solver.state.velocity).sum()
+    assert np.abs(end.momentum - start.momentum).max() < 1e-13 * momentum_scale
+    assert np.abs(end.angular_momentum - start.angular_momentum).max() < 1e-12 * momentum_scale * A
 
 
 def test_collisions_keep_momentum_and_energy_to_rounding():
-    """Half a million of them, with the step so short that nothing else happens."""
-    made = lattice((3, 3, 3), temperature=1e-5 * UNIT, collision_rate=1e9)
-    start, kinetic = made.totals(), made.totals().kinetic
-    before = made.state.velocity.copy()
+    """Half a million collisions in steps so short that nothing else happens."""
+    solver = lattice((3, 3, 3), temperature=1e-5 * UNIT, collision_rate=1e9)
+    start, kinetic = solver.totals(), solver.totals().kinetic
+    velocity_before = solver.state.velocity.copy()
     for _ in range(4):
-        made.step(1e-6)
-    assert np.abs(made.state.velocity - before).max() > 0.1 * np.abs(before).max()
-    assert made.totals().kinetic == pytest.approx(kinetic, rel=1e-6)  # less what moves in 4 us
-    size = MASS * np.abs(made.state.velocity).sum()
-    assert np.abs(made.totals().momentum - start.momentum).max() < 1e-12 * size
+        solver.step(1e-6)
+    assert (
+        np.abs(solver.state.velocity - velocity_before).max() > 0.1 * np.abs(velocity_before).max()
+    )
+    assert solver.totals().kinetic == pytest.approx(
+        kinetic, rel=1e-6
+    )  # the bonds change it slightly in 4 us
+    momentum_scale = MASS * np.abs(solver.state.velocity).sum()
+    assert np.abs(solver.totals().momentum - start.momentum).max() < 1e-12 * momentum_scale
 
 
 def test_a_bath_brings_all_points_to_its_temperature():
     """Equipartition, within four standard errors by blocks, which are below 3 %."""
-    warm = 1e-5 * UNIT
-    bath = Bath(lowest=(0.0, 0.0, 0.0), highest=(0.0, A, A), temperature=warm, rate=100.0)
-    made = lattice(
+    temperature = 1e-5 * UNIT
+    bath = Bath(lowest=(0.0, 0.0, 0.0), highest=(0.0, A, A), temperature=temperature, rate=100.0)
+    solver = lattice(
         (3, 1, 1), baths=(bath,), collision_rate=200.0, courant=0.1, substeps=100,
         averages=Averages(begin=2.0, block=2.0),
     )  # fmt: skip
-    run(made, 60.0)
-    found = made.give({"energies.temperature", "energies.temperature_error", "energies.audit"})
-    error = found["energies.temperature_error"][0]
-    assert 0.0 < error < 0.03 * warm
-    assert found["energies.temperature"][0] == pytest.approx(warm, abs=4.0 * error)
-    assert abs(found["energies.audit"][0]) < 2e-2
-    assert made.give({"baths.temperature"})["baths.temperature"][0] == pytest.approx(warm, rel=0.1)
+    run(solver, 60.0)
+    outputs = solver.give({"energies.temperature", "energies.temperature_error", "energies.audit"})
+    error = outputs["energies.temperature_error"][0]
+    assert 0.0 < error < 0.03 * temperature
+    assert outputs["energies.temperature"][0] == pytest.approx(temperature, abs=4.0 * error)
+    assert abs(outputs["energies.audit"][0]) < 2e-2
+    assert solver.give({"baths.temperature"})["baths.temperature"][0] == pytest.approx(
+        temperature, rel=0.1
+    )
 
 
 def test_heat_flows_through_the_wall_that_a_partner_holds():
@@ -208,30 +215,33 @@ def test_heat_flows_through_the_wall_that_a_partner_holds():
     wall = Bath(
         lowest=(0.0, 0.0, 0.0), highest=(0.0, A, A), temperature=0.0, rate=200.0, coupled=True
     )
-    made = lattice((3, 1, 1), baths=(cold, wall), collision_rate=300.0, substeps=20)
-    assert made.describe()["wall_heat.position"] == pytest.approx(
+    solver = lattice((3, 1, 1), baths=(cold, wall), collision_rate=300.0, substeps=20)
+    assert solver.describe()["wall_heat.position"] == pytest.approx(
         np.array([[0.0, y, z] for y in (0.0, A) for z in (0.0, A)])
     )
-    made.take({"wall_temperature.temperature": np.full(4, 1e-5 * UNIT)})
+    solver.take({"wall_temperature.temperature": np.full(4, 1e-5 * UNIT)})
     joules = 0.0
     for _ in range(400):
-        made.step(made.stable_dt())
-        joules += made.stable_dt() * made.give({"wall_heat.heat_flow"})["wall_heat.heat_flow"].sum()
-    into_bar, out = made.budget.integrals()[[2, 1]]
+        solver.step(solver.stable_dt())
+        joules += (
+            solver.stable_dt() * solver.give({"wall_heat.heat_flow"})["wall_heat.heat_flow"].sum()
+        )
+    into_bar, from_bath = solver.budget.integrals()[[2, 1]]
     assert joules == pytest.approx(-into_bar, rel=1e-12)
-    assert into_bar > 0.0 > out
-    assert made.totals().internal + made.totals().kinetic - made.budget.initial == pytest.approx(
-        into_bar + out, abs=5e-3 * into_bar
+    assert into_bar > 0.0 > from_bath
+    assert (
+        solver.totals().internal + solver.totals().kinetic - solver.budget.initial
+        == pytest.approx(into_bar + from_bath, abs=5e-3 * into_bar)
     )
 
 
 def test_a_seed_makes_the_same_bits_and_another_one_others():
     def end(seed):
         bath = Bath(lowest=(0.0, 0.0, 0.0), highest=(0.0, A, A), temperature=UNIT * 1e-5, rate=9.0)
-        made = lattice((3, 1, 1), baths=(bath,), collision_rate=100.0, seed=seed)
+        solver = lattice((3, 1, 1), baths=(bath,), collision_rate=100.0, seed=seed)
         for _ in range(50):
-            made.step(made.stable_dt())
-        return made.state.position
+            solver.step(solver.stable_dt())
+        return solver.state.position
 
     assert (end(3) == end(3)).all()
     assert (end(3) != end(4)).any()
@@ -239,39 +249,40 @@ def test_a_seed_makes_the_same_bits_and_another_one_others():
 
 @pytest.mark.parametrize("amplitude", [0.15, 0.2])
 def test_a_strong_drive_breaks_the_lattice_and_this_is_told(amplitude):
-    made = bar(amplitude=amplitude, damping=0.1)
-    assert "breaks most lattices up" in made.notes()[0]
+    solver = bar(amplitude=amplitude, damping=0.1)
+    assert "breaks most lattices up" in solver.notes()[0]
     with pytest.raises(StepError, match=r"left all others|are intact|must move by less"):
-        run(made, 15.0)
+        run(solver, 15.0)
 
 
 def test_a_hot_bath_evaporates_the_lattice_and_this_is_told():
     hot = Bath(lowest=(0.0, 0.0, 0.0), highest=(0.0, A, A), temperature=1e-2 * UNIT, rate=100.0)
     with pytest.raises(StepError, match=r"point|bonds"):
         run(lattice((3, 1, 1), baths=(hot,)), 5.0)
-    told = lattice((3, 1, 1), baths=(hot,), if_point_lost="report")
-    run(told, 1.0)
+    solver = lattice((3, 1, 1), baths=(hot,), if_point_lost="report")
+    run(solver, 1.0)
     assert any(
-        "left all others behind" in one or "bonds" in one for one in told.warnings().values()
+        "left all others behind" in warning or "bonds" in warning
+        for warning in solver.warnings().values()
     )
-    assert told.give({"energies.intact"})["energies.intact"][0] < 0.95
+    assert solver.give({"energies.intact"})["energies.intact"][0] < 0.95
 
 
 def test_a_step_beyond_the_limit_is_told_as_such():
-    made = lattice((3, 1, 1), temperature=1e-5 * UNIT)
+    solver = lattice((3, 1, 1), temperature=1e-5 * UNIT)
     with pytest.raises(StepError, match="smaller courant"):
         for _ in range(200):
-            made.step(2.2 / made.built.frequency)
+            solver.step(2.2 / solver.built.frequency)
 
 
 def test_aluminium_itself_is_stepped():
     """A bar of 16 points of 10 mm spacing with E a = 7e8 N/m: 0.1 to 1 MHz; energy is kept."""
     stiffness, mass = 7e10 * A, 8.1e-3 / 16  # N/m, kg
-    given = SevenRootForce(amplitude=1.0)
-    one = lattice((3, 1, 1), seven_roots=given)
-    unit = one.built.law
-    force = SevenRootForce(amplitude=stiffness / slope(unit, A))
-    made = ParticleLattice(
+    unit_force = SevenRootForce(amplitude=1.0)
+    unit_lattice = lattice((3, 1, 1), seven_roots=unit_force)
+    unit_law = unit_lattice.built.law
+    force = SevenRootForce(amplitude=stiffness / slope(unit_law, A))
+    solver = ParticleLattice(
         ParticleLatticeParams(
             lattice=Lattice(cells=(3, 1, 1), spacing=A, mass=mass, temperature=300.0),
             seven_roots=force,
@@ -279,22 +290,22 @@ def test_aluminium_itself_is_stepped():
             substeps=100,
         )
     )
-    assert 1e4 < made.built.frequency / (2.0 * math.pi) < 1e6
+    assert 1e4 < solver.built.frequency / (2.0 * math.pi) < 1e6
     for _ in range(50):
-        made.step(made.stable_dt())
-    assert abs(made.give({"energies.audit"})["energies.audit"][0]) < 1e-3
+        solver.step(solver.stable_dt())
+    assert abs(solver.give({"energies.audit"})["energies.audit"][0]) < 1e-3
 
 
 @pytest.mark.parametrize(
-    ("given", "reason"),
+    ("settings", "reason"),
     [
         ({"collision_rate": 1.0, "integrator": "yoshida"}, "need the integrator"),
         ({"force_table": None, "seven_roots": None}, "one pair force"),
     ],
 )
-def test_what_does_not_go_together_is_refused(given, reason):
+def test_what_does_not_go_together_is_refused(settings, reason):
     with pytest.raises(ValueError, match=reason):
-        lattice(**given)
+        lattice(**settings)
 
 
 def test_boxes_without_points_are_refused():

@@ -1,4 +1,4 @@
-"""Spheres shared out among real MPI ranks: the same bits on any number of them."""
+"""Spheres on several MPI ranks: the same bits on any number of ranks."""
 
 from pathlib import Path
 
@@ -9,7 +9,7 @@ from rank_runs import differences, from_states, from_the_start
 pytestmark = pytest.mark.mpi
 PROGRAM = Path(__file__).with_name("spheres_on_ranks.py")
 NAMES = ("gas", "pile", "too long steps", "row", "streams", "tethered", "parcels")
-STEPS = 15  # with lists made again, and rows that change their rank
+STEPS = 15  # enough for new lists and for rows that change their rank
 folder = from_the_start(PROGRAM, NAMES, STEPS)
 resumed = from_states(PROGRAM, NAMES, 5)
 
