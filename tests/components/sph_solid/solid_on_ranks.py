@@ -1,4 +1,4 @@
-"""What test_sph_solid_ranks.py runs on several ranks; rank 0 writes what came out."""
+"""Scenes that test_sph_solid_ranks.py runs on several ranks; rank 0 writes the results."""
 
 import json
 import os
@@ -36,7 +36,7 @@ PARAMS = {
         "symmetry": [{"axis": "x"}, {"axis": "y"}],
         "kernel_correction": True,
     },
-    "lasting": {  # neighbours of the start, of bodies that touch and slide
+    "lasting": {  # initial neighbours; the bodies touch and slide
         "spacing": 0.005,
         "total_lagrangian": True,
         "bodies": [
@@ -56,7 +56,7 @@ PARAMS = {
 
 
 class Run(SolverRun):
-    """A case of a solid; some particles are glued to a mesh that moves and lets some go."""
+    """A solid; some particles are glued to a moving mesh, which releases some of them."""
 
     def build(self):
         params = TypeAdapter(SphSolidParams).validate_json(json.dumps(PARAMS[self.name]))
@@ -75,7 +75,7 @@ class Run(SolverRun):
         return {"glued.velocity": velocity, "glue_activity.active": active}
 
     def failure(self, identity=700):
-        """What is said of a particle whose velocity is no number; the rank it names is right."""
+        """Error message for a particle with a velocity of NaN; it must name the particle's rank."""
         solid, text = self.solver, "nothing"
         rows = np.flatnonzero(solid.state.identity == identity)
         solid.state.velocity[rows] = np.nan

@@ -1,4 +1,4 @@
-"""Shapes, motion at the start, and gravity of bodies, against exact answers."""
+"""Shapes, initial motion and gravity of bodies, against exact solutions."""
 
 import math
 
@@ -74,8 +74,8 @@ def test_a_mesh_is_filled_with_its_volume_and_its_motion(tmp_path):
     solid = SphSolid(SphSolidParams(spacing=DX, bodies=(body,)))
     mass, total = solid.materials.mass(solid.state), solid.totals()
     assert total.mass == pytest.approx(RHO * ball.volume * DX**3, rel=1e-6)
-    middle = mass @ solid.state.position / total.mass
-    np.testing.assert_allclose(middle, [0.1, 0.0, 0.0], atol=0.02 * DX)
+    centre = mass @ solid.state.position / total.mass
+    np.testing.assert_allclose(centre, [0.1, 0.0, 0.0], atol=0.02 * DX)
     np.testing.assert_allclose(total.momentum, total.mass * np.array([1.0, 2.0, 3.0]), rtol=0.01)
     x = solid.state.position[:, 0] - 0.1
     np.testing.assert_allclose(solid.state.velocity[:, 1], 2.0 + 50.0 * x, atol=1e-3)
@@ -90,20 +90,22 @@ def test_a_gradient_of_velocity_is_about_the_middle_of_the_body():
 
 
 def test_a_spinning_ring_keeps_its_angular_momentum_and_grows_by_its_stress():
-    """A thin ring that spins has the hoop stress ρ (ω R)²; its mean strain is that over E'."""
+    """A spinning thin ring has the hoop stress ρ (ω R)²; its mean strain is this stress over E'."""
     rate, radius = 120.0, 0.018
     solid = ring(angular_velocity=(0.0, rate, 0.0))
     before, dt = solid.totals().angular_momentum[1], solid.stable_dt()
-    place = solid.state.position
-    assert solid.state.velocity[:, 0] == pytest.approx(rate * place[:, 2])
-    # It swings about the strain of equilibrium: the mean over whole periods.
+    position = solid.state.position
+    assert solid.state.velocity[:, 0] == pytest.approx(rate * position[:, 2])
+    # The ring oscillates about its equilibrium strain: take the mean over whole periods.
     modulus = E / (1.0 - NU**2)
     period = 2.0 * math.pi * radius / math.sqrt(modulus / RHO)
-    mass, sizes = solid.materials.mass(solid.state), []
+    mass, mean_radii = solid.materials.mass(solid.state), []
     for _ in range(round(2.0 * period / dt)):
         solid.step(dt)
-        sizes.append(mass @ np.hypot(*solid.state.position[:, ::2].T) / mass.sum())
-    strain = np.mean(sizes) / (mass @ np.hypot(*solid.state.reference[:, ::2].T) / mass.sum()) - 1
+        mean_radii.append(mass @ np.hypot(*solid.state.position[:, ::2].T) / mass.sum())
+    strain = (
+        np.mean(mean_radii) / (mass @ np.hypot(*solid.state.reference[:, ::2].T) / mass.sum()) - 1
+    )
     assert strain == pytest.approx(RHO * (rate * radius) ** 2 / modulus, rel=0.05)
     assert solid.totals().angular_momentum[1] == pytest.approx(before, rel=1e-9)
 
@@ -126,7 +128,7 @@ def test_a_ring_breathes_at_its_frequency():
 
 
 @pytest.mark.parametrize(
-    ("given", "sentence"),
+    ("settings", "sentence"),
     [
         ({"inner_radius": 0.03}, "inner_radius of a cylinder must be below"),
         ({"top": None}, "a cylinder is described by base and top and radius alone"),
@@ -135,23 +137,23 @@ def test_a_ring_breathes_at_its_frequency():
         ({"file": "a.stl"}, "a cylinder is described by"),
     ],
 )
-def test_tubes_that_are_none_are_refused(given, sentence):
+def test_tubes_that_are_none_are_refused(settings, sentence):
     shape = {
         "shape": "cylinder", "base": (0.0, 0.0, 0.0), "top": (0.0, 0.0, 0.01), "radius": 0.01,
         "inner_radius": 0.005, "material": RUBBER,
     }  # fmt: skip
-    if "file" in given:
-        given = {"file": __file__}
+    if "file" in settings:
+        settings = {"file": __file__}
     with pytest.raises(ValueError, match=sentence):
-        Body(**(shape | given))
+        Body(**(shape | settings))
 
 
 @pytest.mark.parametrize(
-    "given", [{"angular_velocity": (1.0, 0.0, 0.0)}, {"velocity_gradient": ((0, 1, 0),) * 3}]
+    "motion", [{"angular_velocity": (1.0, 0.0, 0.0)}, {"velocity_gradient": ((0, 1, 0),) * 3}]
 )
-def test_motion_out_of_the_plane_is_refused_in_two_dimensions(given):
+def test_motion_out_of_the_plane_is_refused_in_two_dimensions(motion):
     with pytest.raises(ValueError, match="angular_velocity is about y alone"):
-        ring(**given)
+        ring(**motion)
 
 
 def test_gravity_out_of_the_plane_is_refused():

@@ -1,4 +1,4 @@
-"""Results that are probably wrong are told: energy from nowhere, numerical fracture."""
+"""Warnings of results that are probably wrong: energy that grows, numerical fracture."""
 
 import math
 
@@ -107,8 +107,8 @@ def test_viscosities_that_do_not_suit_the_speed_of_impact_are_told(speed, settin
     low, high = (0.0, 0.0, 0.0), (3 * DX, 3 * DX, 3 * DX)
     body = Body(lowest=low, highest=high, material="steel", velocity=(0.0, 0.0, -speed))
     solid = SphSolid(SphSolidParams(spacing=DX, bodies=(body,), **settings))
-    found = solid.warnings().get("viscosity")
-    assert found is None if sentence is None else sentence in found
+    warning = solid.warnings().get("viscosity")
+    assert warning is None if sentence is None else sentence in warning
 
 
 def test_a_slow_impact_with_the_viscosity_of_shocks_is_noted():

@@ -12,13 +12,13 @@ DX = 0.01  # m
 RUBBER = Material(density=1000.0, youngs_modulus=1e7, poissons_ratio=0.3)
 
 
-def block(long=6, spacing=DX, left=0.0, speed=1.0, **more):
+def block(long=6, spacing=DX, left=0.0, speed=1.0, **settings):
     highest = (left + long * DX, 4 * DX, 4 * DX)
     gradient = ((speed / DX, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
     body = Body(
         lowest=(left, 0.0, 0.0), highest=highest, material=RUBBER, velocity_gradient=gradient
     )
-    return SphSolid(SphSolidParams(spacing=spacing, bodies=(body,), **more))
+    return SphSolid(SphSolidParams(spacing=spacing, bodies=(body,), **settings))
 
 
 def advance(solid, steps):
@@ -27,34 +27,34 @@ def advance(solid, steps):
     return solid
 
 
-@pytest.mark.parametrize("keeps", [False, True])
-def test_nothing_changed_goes_on_with_the_same_bits_and_a_clock_at_0(keeps):
-    first = advance(block(total_lagrangian=keeps), 40)
-    again = block(total_lagrangian=keeps)
-    again.begin_from(first.save())
-    assert again.state.time == 0.0 and again.state.steps == 0
-    advance(first, 40)
-    advance(again, 40)
+@pytest.mark.parametrize("total_lagrangian", [False, True])
+def test_nothing_changed_goes_on_with_the_same_bits_and_a_clock_at_0(total_lagrangian):
+    original = advance(block(total_lagrangian=total_lagrangian), 40)
+    restarted = block(total_lagrangian=total_lagrangian)
+    restarted.begin_from(original.save())
+    assert restarted.state.time == 0.0 and restarted.state.steps == 0
+    advance(original, 40)
+    advance(restarted, 40)
     for name in ("position", "velocity", "deviator", "energy", "bound"):
-        np.testing.assert_array_equal(getattr(again.state, name), getattr(first.state, name))
+        np.testing.assert_array_equal(getattr(restarted.state, name), getattr(original.state, name))
 
 
 def test_warnings_of_the_run_before_do_not_carry_over():
-    first = advance(block(), 40)
-    first.state.torn[:] = 1000.0, 1e-3, 0.0, 0.0, 0.0
-    first.state.sums[2] = 1e6
-    assert {"fracture", "energy"} <= set(first.warnings())
-    again = block()
-    again.begin_from(first.save())
-    assert not again.warnings()
-    heat = first.state.viscous[0]
-    advance(again, 1)
-    assert again.state.viscous[2] > 0.5 * heat > again.state.viscous[0] == 0.0
-    assert not again.warnings()
+    original = advance(block(), 40)
+    original.state.torn[:] = 1000.0, 1e-3, 0.0, 0.0, 0.0
+    original.state.sums[2] = 1e6
+    assert {"fracture", "energy"} <= set(original.warnings())
+    restarted = block()
+    restarted.begin_from(original.save())
+    assert not restarted.warnings()
+    heat = original.state.viscous[0]
+    advance(restarted, 1)
+    assert restarted.state.viscous[2] > 0.5 * heat > restarted.state.viscous[0] == 0.0
+    assert not restarted.warnings()
 
 
 @pytest.mark.parametrize(
-    ("other", "text"),
+    ("settings", "message"),
     [
         ({"long": 5}, "as many particles as in the state that it begins from, 96; found 80"),
         ({"spacing": 0.02}, "as many particles as in the state that it begins from, 96; found 12"),
@@ -66,12 +66,12 @@ def test_warnings_of_the_run_before_do_not_carry_over():
         ),
     ],
 )
-def test_a_state_of_other_particles_is_refused(other, text):
-    state = advance(block(total_lagrangian=other.get("total_lagrangian", False)), 1).save()
-    if "fixed" in other:
-        other = {"fixed": tuple(Fixed(**region) for region in other["fixed"])}
-    with pytest.raises(SceneError, match=text):
-        block(**other).begin_from(state)
+def test_a_state_of_other_particles_is_refused(settings, message):
+    state = advance(block(total_lagrangian=settings.get("total_lagrangian", False)), 1).save()
+    if "fixed" in settings:
+        settings = {"fixed": tuple(Fixed(**region) for region in settings["fixed"])}
+    with pytest.raises(SceneError, match=message):
+        block(**settings).begin_from(state)
 
 
 def test_particles_of_another_size_are_refused_though_as_many():

@@ -1,4 +1,4 @@
-"""Bodies of particles shared out among real MPI ranks: the same bits on any number of them."""
+"""Bodies of particles on several MPI ranks: the same bits on any number of ranks."""
 
 import json
 from pathlib import Path
@@ -16,7 +16,7 @@ from quintet.interfaces.errors import SceneError
 pytestmark = pytest.mark.mpi
 PROGRAM = Path(__file__).with_name("solid_on_ranks.py")
 NAMES = ("impact", "quarter", "lasting", "glued")
-STEPS = 100  # with lists made again, and rows that change their rank
+STEPS = 100  # enough for new lists and for rows that change their rank
 folder = from_the_start(PROGRAM, NAMES, STEPS)
 resumed = from_states(PROGRAM, NAMES, 30)
 
@@ -32,11 +32,11 @@ def test_a_state_of_two_ranks_goes_on_with_three_as_one_goes_on(name, resumed):
 
 
 def test_bodies_with_the_neighbours_of_the_start_meet_and_slide(folder):
-    reached = np.load(folder / "lasting-2.npz")
-    plate = reached["view body"] == 0
-    assert reached["view velocity"][plate, 2].min() < -2.0
-    moved = reached["view points"][~plate, 0].mean() - 0.04
-    assert moved > 0.005  # further than a spacing
+    results = np.load(folder / "lasting-2.npz")
+    plate = results["view body"] == 0
+    assert results["view velocity"][plate, 2].min() < -2.0
+    shift = results["view points"][~plate, 0].mean() - 0.04
+    assert shift > 0.005  # more than one spacing
 
 
 def test_rings_are_refused_on_several_ranks():

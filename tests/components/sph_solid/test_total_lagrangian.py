@@ -1,4 +1,4 @@
-"""Bodies whose pairs are those of the start: stretching, turning, waves, resuming."""
+"""Bodies that keep their initial pairs: stretching, rotation, contact, restart."""
 
 import math
 
@@ -15,24 +15,24 @@ RUBBER = Material(density=1000.0, youngs_modulus=1e7, poissons_ratio=0.4)
 CALM = {"viscosity_linear": 0.0, "viscosity_quadratic": 0.0}
 
 
-def strip(**given):
+def strip(**settings):
     """A strip in plane strain."""
     body = Body(lowest=(0.0, 0.0, 0.0), highest=(LONG * DX, 1.0, WIDE * DX), material=RUBBER)
-    given = CALM | {"total_lagrangian": True} | given
-    return SphSolid(SphSolidParams(spacing=DX, dimensions=2, bodies=(body,), **given))
+    settings = CALM | {"total_lagrangian": True} | settings
+    return SphSolid(SphSolidParams(spacing=DX, dimensions=2, bodies=(body,), **settings))
 
 
-def run(made, time):
-    while made.state.time < time:
-        made.step(min(made.stable_dt(), time - made.state.time + 1e-15))
-    return made
+def run(solid, time):
+    while solid.state.time < time:
+        solid.step(min(solid.stable_dt(), time - solid.state.time + 1e-15))
+    return solid
 
 
-def stretch(made, speed):
-    """Pull both ends apart, at a speed [m/s], and let go."""
-    x = made.state.position[:, 0]
-    made.state.velocity[:, 0] = speed * math.pi * np.sin(math.pi * (x / (LONG * DX) - 0.5)) / 2.0
-    return made
+def stretch(solid, speed):
+    """Set velocities that pull both ends apart at a speed [m/s]."""
+    x = solid.state.position[:, 0]
+    solid.state.velocity[:, 0] = speed * math.pi * np.sin(math.pi * (x / (LONG * DX) - 0.5)) / 2.0
+    return solid
 
 
 @pytest.mark.parametrize("dimensions", [2, 3])
@@ -42,21 +42,21 @@ def test_gradients_of_linear_motion_are_exact_in_deformed_bodies(dimensions):
     params = SphSolidParams(
         spacing=DX, dimensions=dimensions, bodies=(body,), total_lagrangian=True
     )
-    made, random = SphSolid(params), np.random.default_rng(3)
-    deformed = np.eye(3) + 0.3 * random.uniform(-1.0, 1.0, (3, 3))
+    solid, random = SphSolid(params), np.random.default_rng(3)
+    deformation = np.eye(3) + 0.3 * random.uniform(-1.0, 1.0, (3, 3))
     rate = random.uniform(-1.0, 1.0, (3, 3))
     if dimensions == 2:
-        deformed[1], deformed[:, 1], rate[1], rate[:, 1] = (0, 1, 0), (0, 1, 0), 0.0, 0.0
-    count = made.state.particles
-    made.rows.place[:count, :3] = made.state.position @ deformed.T
-    made.rows.motion[:count, :3] = made.rows.place[:count, :3] @ rate.T
-    made.sums.write_gradients(made.rows, made.law)
-    assert made.rows.gradient == pytest.approx(np.tile(rate.ravel(), (count, 1)), abs=1e-12)
+        deformation[1], deformation[:, 1], rate[1], rate[:, 1] = (0, 1, 0), (0, 1, 0), 0.0, 0.0
+    count = solid.state.particles
+    solid.rows.place[:count, :3] = solid.state.position @ deformation.T
+    solid.rows.motion[:count, :3] = solid.rows.place[:count, :3] @ rate.T
+    solid.sums.write_gradients(solid.rows, solid.law)
+    assert solid.rows.gradient == pytest.approx(np.tile(rate.ravel(), (count, 1)), abs=1e-12)
 
 
-def length(made):
+def length(solid):
     """Stretch of the whole strip."""
-    return np.ptp(made.state.position[:, 0]) / ((LONG - 1) * DX) - 1.0
+    return np.ptp(solid.state.position[:, 0]) / ((LONG - 1) * DX) - 1.0
 
 
 def test_a_strip_that_is_stretched_comes_back_unless_its_particles_form_clumps():
@@ -64,39 +64,39 @@ def test_a_strip_that_is_stretched_comes_back_unless_its_particles_form_clumps()
     plain = stretch(strip(total_lagrangian=False, **slow), 15.0)
     repelled = stretch(strip(total_lagrangian=False, artificial_stress=0.3, **slow), 15.0)
     lasting = stretch(strip(**slow), 15.0)
-    for made in (plain, repelled, lasting):
-        assert length(run(made, 1e-4)) > 0.12
+    for solid in (plain, repelled, lasting):
+        assert length(run(solid, 1e-4)) > 0.12
     assert length(run(plain, 4e-4)) > 0.06
     assert length(run(repelled, 4e-4)) < -0.05
     assert length(run(lasting, 3.5e-4)) < -0.05
 
 
 def test_energy_and_momentum_of_a_strip_that_is_stretched_by_a_third_are_kept():
-    made = stretch(strip(courant=0.25), 30.0)
-    before, longest = made.totals(), 0.0
+    solid = stretch(strip(courant=0.25), 30.0)
+    before, longest = solid.totals(), 0.0
     for n in range(1, 9):
-        longest = max(longest, length(run(made, n * 1e-4)))
-    after = made.totals()
+        longest = max(longest, length(run(solid, n * 1e-4)))
+    after = solid.totals()
     assert longest > 0.28
-    whole = before.kinetic + before.internal
-    assert after.kinetic + after.internal == pytest.approx(whole, rel=2e-3)
-    moving = np.abs(made.state.velocity).max() * after.mass
-    assert np.abs(after.momentum).max() < 1e-12 * moving
+    start_energy = before.kinetic + before.internal
+    assert after.kinetic + after.internal == pytest.approx(start_energy, rel=2e-3)
+    momentum_scale = np.abs(solid.state.velocity).max() * after.mass
+    assert np.abs(after.momentum).max() < 1e-12 * momentum_scale
 
 
 def test_a_rotation_strains_nothing():
-    made = strip()
-    x = made.state.position - made.state.position.mean(axis=0)
+    solid = strip()
+    x = solid.state.position - solid.state.position.mean(axis=0)
     rate = 200.0  # 1/s, 2.4 m/s at the ends: waves run 146 m/s
-    made.state.velocity[:, 0], made.state.velocity[:, 2] = -rate * x[:, 2], rate * x[:, 0]
-    before = made.totals().kinetic
-    run(made, 0.5 / rate)
-    after = made.totals()
+    solid.state.velocity[:, 0], solid.state.velocity[:, 2] = -rate * x[:, 2], rate * x[:, 0]
+    before = solid.totals().kinetic
+    run(solid, 0.5 / rate)
+    after = solid.totals()
     assert after.kinetic == pytest.approx(before, rel=2e-3)
     assert abs(after.internal) < 1e-3 * before
-    now = made.state.position[np.argsort(made.state.identity)]
-    along = now[-1] - now[0] - (x[-1] - x[0])
-    assert np.linalg.norm(along) == pytest.approx(
+    position = solid.state.position[np.argsort(solid.state.identity)]
+    displacement = position[-1] - position[0] - (x[-1] - x[0])
+    assert np.linalg.norm(displacement) == pytest.approx(
         2.0 * math.sin(0.25) * np.linalg.norm(x[-1] - x[0]), rel=0.02
     )
 
@@ -105,54 +105,57 @@ def test_half_a_strip_before_its_plane_moves_as_the_whole():
     whole = run(stretch(strip(), 3.0), 5e-5)
     plane = SymmetryPlane(axis="x", position=0.5 * LONG * DX)
     half = run(stretch(strip(symmetry=(plane,)), 3.0), 5e-5)
-    mine = whole.state.position[np.argsort(whole.state.identity)]
-    mine = mine[mine[:, 0] > 0.5 * LONG * DX]
-    other = half.state.position[np.argsort(half.state.identity)]
-    order = [np.lexsort((one[:, 2].round(9), one[:, 0].round(9))) for one in (mine, other)]
-    assert mine[order[0]] == pytest.approx(other[order[1]], abs=1e-9)
+    whole_position = whole.state.position[np.argsort(whole.state.identity)]
+    whole_position = whole_position[whole_position[:, 0] > 0.5 * LONG * DX]
+    half_position = half.state.position[np.argsort(half.state.identity)]
+    order = [
+        np.lexsort((position[:, 2].round(9), position[:, 0].round(9)))
+        for position in (whole_position, half_position)
+    ]
+    assert whole_position[order[0]] == pytest.approx(half_position[order[1]], abs=1e-9)
 
 
 def test_a_resumed_run_has_the_same_bits():
-    made = run(stretch(strip(), 20.0), 3e-5)
-    kept = made.save()
-    ahead = run(made, 6e-5).save()
-    again = strip()
-    again.load(kept)
-    found = run(again, 6e-5).save()
-    assert all(np.array_equal(ahead[key], found[key]) for key in ahead)
+    solid = run(stretch(strip(), 20.0), 3e-5)
+    saved = solid.save()
+    expected = run(solid, 6e-5).save()
+    resumed = strip()
+    resumed.load(saved)
+    result = run(resumed, 6e-5).save()
+    assert all(np.array_equal(expected[key], result[key]) for key in expected)
 
 
 def test_what_does_not_go_with_it_is_refused():
-    for other in ({"kernel_correction": True}, {"artificial_stress": 0.3}):
+    for settings in ({"kernel_correction": True}, {"artificial_stress": 0.3}):
         with pytest.raises(ValueError, match="total_lagrangian has corrected gradients"):
-            strip(**other)
+            strip(**settings)
 
 
-def pair(gap=0.5, speed=4.0, **given):
+def pair(gap=0.5, speed=4.0, **settings):
     """Two strips, one after the other along x, that fly at each other at a speed [m/s]."""
     middle, half = LONG * DX, (LONG + 0.5 * gap) * DX
     bodies = tuple(
         Body(
             lowest=(low, 0.0, 0.0), highest=(low + LONG * DX, 1.0, WIDE * DX), material=RUBBER,
-            velocity=(way * speed, 0.0, 0.0),
+            velocity=(direction * speed, 0.0, 0.0),
         )
-        for low, way in ((middle - half, 1.0), (middle + half - LONG * DX, -1.0))
+        for low, direction in ((middle - half, 1.0), (middle + half - LONG * DX, -1.0))
     )  # fmt: skip
-    return SphSolid(SphSolidParams(spacing=DX, dimensions=2, bodies=bodies, **given))
+    return SphSolid(SphSolidParams(spacing=DX, dimensions=2, bodies=bodies, **settings))
 
 
 def test_bodies_that_meet_push_each_other_off_and_exchange_their_momentum():
-    """Equal bars that meet part with each other's velocity."""
-    made = pair()
-    before = made.totals()
-    run(made, 6e-4)
-    after, left = made.totals(), made.state.body == 0
-    assert -4.0 < made.state.velocity[left, 0].mean() < -0.85 * 4.0
-    assert made.state.position[left, 0].max() < made.state.position[~left, 0].min()
-    whole = before.kinetic + before.internal
-    assert after.kinetic + after.internal == pytest.approx(whole, rel=5e-3)
+    """Equal bars exchange their velocities."""
+    solid = pair()
+    before = solid.totals()
+    run(solid, 6e-4)
+    after, left = solid.totals(), solid.state.body == 0
+    assert -4.0 < solid.state.velocity[left, 0].mean() < -0.85 * 4.0
+    assert solid.state.position[left, 0].max() < solid.state.position[~left, 0].min()
+    start_energy = before.kinetic + before.internal
+    assert after.kinetic + after.internal == pytest.approx(start_energy, rel=5e-3)
     assert np.abs(after.momentum).max() < 1e-12 * 4.0 * after.mass
-    assert not made.warnings()
+    assert not solid.warnings()
 
 
 def test_contact_of_shocked_bodies_gains_no_energy():
@@ -176,16 +179,16 @@ def test_a_body_that_meets_a_plane_moves_as_one_that_meets_its_image():
     body = whole.params.bodies[0]
     params = SphSolidParams(spacing=DX, dimensions=2, bodies=(body,), symmetry=(plane,))
     half = run(SphSolid(params), 1.2e-3)
-    mine = whole.state.velocity[whole.state.body == 0, 0]
-    assert half.state.velocity[:, 0].mean() == pytest.approx(mine.mean(), rel=0.02)
+    velocity = whole.state.velocity[whole.state.body == 0, 0]
+    assert half.state.velocity[:, 0].mean() == pytest.approx(velocity.mean(), rel=0.02)
     assert half.state.velocity[:, 0].mean() < -3.0
 
 
 def test_a_resumed_contact_has_the_same_bits():
-    made, again = run(pair(), 4e-5), pair()
-    again.load(made.save())
-    ahead, found = run(made, 1.2e-4).save(), run(again, 1.2e-4).save()
-    assert all(np.array_equal(ahead[key], found[key]) for key in ahead)
+    solid, resumed = run(pair(), 4e-5), pair()
+    resumed.load(solid.save())
+    expected, result = run(solid, 1.2e-4).save(), run(resumed, 1.2e-4).save()
+    assert all(np.array_equal(expected[key], result[key]) for key in expected)
 
 
 def test_elastic_bodies_keep_the_neighbours_of_the_start_unless_told_otherwise():
