@@ -6,7 +6,7 @@ from quintet.components.shared.contact.kernels import Points
 from quintet.components.shared.contact.penalty import PenaltyContact
 
 RADIUS, MODULUS, THICK = 0.5, 2.0, 1.0  # m, Pa, m; without Poisson's ratio
-# Two squares in the plane z = 0 that share an edge, and a wall that falls from the second's end.
+# Two squares in the plane z = 0 that share an edge, and a wall down from the end of the second.
 NODES = np.array(
     [[0, 0, 0], [2, 0, 0], [4, 0, 0], [0, 2, 0], [2, 2, 0], [4, 2, 0], [4, 0, -2], [4, 2, -2]],
     float,

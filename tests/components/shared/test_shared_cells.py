@@ -22,8 +22,8 @@ def test_points_are_sorted_by_cell_in_the_order_they_came_in(count: int, columns
     np.testing.assert_array_equal(order, np.argsort(cell, kind="stable"))
     np.testing.assert_array_equal(start, np.searchsorted(cell[order], np.arange(len(start))))
     (low, high), reach = BOX, 1.001 * 0.3
-    out = ((points[:, :3] < low - reach) | (points[:, :3] > high + 1.5 * reach)).any(axis=1)
-    assert (cell[out] == grid.cells).all()
+    outside = ((points[:, :3] < low - reach) | (points[:, :3] > high + 1.5 * reach)).any(axis=1)
+    assert (cell[outside] == grid.cells).all()
     assert (cell <= grid.cells).all()
 
 

@@ -22,10 +22,10 @@ def test_a_particle_is_pushed_from_the_nearest_point_of_the_surface(place, direc
     contact, points = contact_of(1), points_at([place])
     take(contact)
     contact.kick(points, 1.0)
-    stiff = 1.0 / (2.0 * RADIUS / MODULUS + THICK / MODULUS)
+    stiffness = 1.0 / (2.0 * RADIUS / MODULUS + THICK / MODULUS)
     unit = np.array(direction) / np.linalg.norm(direction)
-    np.testing.assert_allclose(points.velocity[0], stiff * depth * unit, atol=1e-12)
-    assert contact.numbers.energy == pytest.approx(0.5 * stiff * depth**2)
+    np.testing.assert_allclose(points.velocity[0], stiffness * depth * unit, atol=1e-12)
+    assert contact.numbers.energy == pytest.approx(0.5 * stiffness * depth**2)
 
 
 def test_reactions_have_the_sum_and_the_moment_of_the_forces():
@@ -38,15 +38,15 @@ def test_reactions_have_the_sum_and_the_moment_of_the_forces():
     contact.kick(points, 1e-2)
     force = (points.velocity - velocity) / 1e-2
     assert (force != 0.0).any(axis=1).sum() > 10
-    size = np.abs(force).sum()
-    assert np.abs(force.sum(axis=0) + contact.reaction.sum(axis=0)).max() < 1e-12 * size
-    # Tangential forces act at the surface: a particle's own spin has no part in contact.
-    normal = contact_of(40, node)
+    force_scale = np.abs(force).sum()
+    assert np.abs(force.sum(axis=0) + contact.reaction.sum(axis=0)).max() < 1e-12 * force_scale
+    # Friction acts at the surface and particles have no spin: the moment is kept without it.
+    frictionless = contact_of(40, node)
     points = points_at(place)
-    take(normal, node)
-    normal.kick(points, 1.0)
+    take(frictionless, node)
+    frictionless.kick(points, 1.0)
     moment = np.cross(place, points.velocity).sum(axis=0)
-    moment += np.cross(node, normal.reaction).sum(axis=0)
+    moment += np.cross(node, frictionless.reaction).sum(axis=0)
     assert np.abs(moment).max() < 1e-12 * np.abs(points.velocity).sum()
 
 
@@ -60,7 +60,7 @@ def test_a_particle_that_is_spread_over_faces_keeps_force_and_moment():
     moment = np.cross(np.array(place), points.velocity) + np.cross(NODES, contact.reaction).sum(0)
     np.testing.assert_allclose(moment, 0.0, atol=1e-15)
     assert contact.reaction.sum(axis=0)[2] == pytest.approx(-points.velocity[0, 2])
-    # One that covers what is no face is not spread.
+    # A particle that reaches beyond the faces is not spread.
     reactions = []
     for count in (1.0, 3.0):
         contact, points = contact_of(1, points=count), points_at([(1.0, 0.2, 0.4)])
@@ -74,15 +74,15 @@ def test_the_nearest_face_is_the_same_whether_or_not_the_others_are_looked_at():
     rng = np.random.default_rng(5)
     place = rng.uniform([0.0, 0.0, 0.2], [4.0, 2.0, 0.6], (60, 3))
     velocity = 0.05 * rng.standard_normal((60, 3))
-    looked, quick = contact_of(60), contact_of(60)
+    thorough, quick = contact_of(60), contact_of(60)
     skipped = 0
     for step in range(40):
         node = NODES + 0.01 * np.sin(0.2 * step + np.arange(24.0)).reshape(8, 3)
         reactions = []
-        for contact in (looked, quick):
+        for contact in (thorough, quick):
             points = points_at(place, velocity.copy())
             take(contact, node)
-            if contact is looked and contact.near is not None:
+            if contact is thorough and contact.near is not None:
                 contact.near.recheck_slack[:] = np.inf
             contact.kick(points, 0.05)
             reactions.append(contact.reaction)
@@ -112,18 +112,18 @@ def test_triangles_and_edges_in_a_plane_are_touched_like_squares():
 
 
 def test_of_two_faces_at_the_same_distance_the_first_is_touched():
-    place, kept = [(2.0, 1.0, 0.3)], []
-    for first in (-1, 0, 1):
+    place, results = [(2.0, 1.0, 0.3)], []
+    for last_face in (-1, 0, 1):
         contact = contact_of(1, friction=0.3)
         take(contact)
         contact.kick(points_at([(1.9, 1.0, 0.3)]), 1e-3)
-        contact.near.last[:], contact.near.recheck_slack[:] = first, np.inf
+        contact.near.last[:], contact.near.recheck_slack[:] = last_face, np.inf
         contact.kick(points_at(place, np.ones((1, 3))), 1e-3)
-        kept.append([contact.near.last.copy(), contact.reaction.copy(), contact.slip.copy()])
-    assert kept[0][0] == 0
-    for others in kept[1:]:
-        for array, same in zip(others, kept[0], strict=True):
-            np.testing.assert_array_equal(array, same)
+        results.append([contact.near.last.copy(), contact.reaction.copy(), contact.slip.copy()])
+    assert results[0][0] == 0
+    for result in results[1:]:
+        for array, expected in zip(result, results[0], strict=True):
+            np.testing.assert_array_equal(array, expected)
 
 
 def test_an_eroded_face_is_not_touched():
@@ -143,33 +143,36 @@ def test_a_spring_whose_face_erodes_is_let_go_and_its_energy_is_lost():
     for _ in range(2):
         take(contact)
         contact.kick(points, 1e-2)
-    stiff = 1.0 / (2.0 * RADIUS / MODULUS + THICK / MODULUS)
-    held, before = 0.5 * stiff * (contact.slip[0] ** 2).sum(), contact.numbers.dissipated
-    assert held > 0.0
+    stiffness = 1.0 / (2.0 * RADIUS / MODULUS + THICK / MODULUS)
+    spring_energy, dissipated_before = (
+        0.5 * stiffness * (contact.slip[0] ** 2).sum(),
+        contact.numbers.dissipated,
+    )
+    assert spring_energy > 0.0
     take(contact, active=np.zeros(3))
     contact.kick(points, 1e-2)
     assert not contact.slip.any() and not contact.held.any()
-    assert contact.numbers.dissipated - before == pytest.approx(held)
+    assert contact.numbers.dissipated - dissipated_before == pytest.approx(spring_energy)
 
 
 def test_friction_holds_below_its_limit_and_slides_at_it():
     contact, points = contact_of(1, friction=0.5), points_at([(1.0, 1.0, 0.3)])
-    stiff = 1.0 / (2.0 * RADIUS / MODULUS + THICK / MODULUS)
-    push, dt, done = stiff * 0.2, 1e-3, 0.0
+    stiffness = 1.0 / (2.0 * RADIUS / MODULUS + THICK / MODULUS)
+    push, dt, work = stiffness * 0.2, 1e-3, 0.0
     for step in range(2000):
         take(contact)
         points.velocity[:] = (1.0, 0.0, 0.0)  # drawn along
         points.place[:] = (1.0 + step * dt * 1e-3, 1.0, 0.3)
         contact.kick(points, dt)
         force = (points.velocity[0, 0] - 1.0) / dt
-        expected = -min(stiff * step * dt, 0.5 * push)
+        expected = -min(stiffness * step * dt, 0.5 * push)
         assert force == pytest.approx(expected, rel=1e-9)
-        done -= force * dt
-    held = 0.5 * (0.5 * push) ** 2 / stiff
-    # The force of a step's begin is half a step late: Σ f Δ less half a step of the last force.
-    spent = done - 0.5 * 0.5 * push * dt
-    assert contact.numbers.dissipated == pytest.approx(spent - held, rel=1e-3)
-    assert contact.slip[0, 0] == pytest.approx(0.5 * push / stiff)
+        work -= force * dt
+    spring_energy = 0.5 * (0.5 * push) ** 2 / stiffness
+    # The force is that at the start of a step: subtract half a step of the last force.
+    friction_work = work - 0.5 * 0.5 * push * dt
+    assert contact.numbers.dissipated == pytest.approx(friction_work - spring_energy, rel=1e-3)
+    assert contact.slip[0, 0] == pytest.approx(0.5 * push / stiffness)
 
 
 def test_deep_penetration_is_warned_of():
@@ -182,7 +185,7 @@ def test_deep_penetration_is_warned_of():
 
 
 def _fall(side, step):
-    """Strike a face from above or below at 100 m/s; steps [s] as told or as predicted."""
+    """Strike a face from above or below at 100 m/s, in steps of `step` [s] or predicted steps."""
     node, face = NODES[[0, 1, 4, 3]], np.array([[0, 1, 2, 3]])
     contact = contact_of(1, node, face if side > 0.0 else face[:, ::-1], mass=1e9)
     points = points_at([(1.0, 1.0, side * 4.0)], np.array([[0.0, 0.0, -side * 100.0]]), mass=0.1)
@@ -203,7 +206,7 @@ def _fall(side, step):
 def test_no_particle_passes_through_a_face_in_predicted_steps(side):
     speed, warnings = _fall(side, None)
     assert speed > 90.0 and not warnings
-    assert _fall(side, 0.03)[0] == -100.0  # it did not see the face
+    assert _fall(side, 0.03)[0] == -100.0  # a step jumps over the face
 
 
 def test_a_particle_that_has_passed_through_a_face_is_warned_of():
@@ -220,13 +223,13 @@ def test_a_run_that_begins_from_another_keeps_history_and_counts_from_0():
     for _ in range(2):
         take(contact)
         contact.kick(points, 1e-1)
-    saved, other = contact.save(), contact_of(1)
+    saved, restarted = contact.save(), contact_of(1)
     assert contact.warnings() and contact.numbers.dissipated > 0.0
-    other.load(other.beginning(saved))
-    numbers = other.numbers
-    assert not other.warnings() and numbers.dissipated == numbers.work == numbers.deepest == 0.0
-    np.testing.assert_array_equal(other.slip, contact.slip)
-    assert numbers.energy > 0.0 and other.stable_step(1.0) == contact.stable_step(1.0)
+    restarted.load(restarted.beginning(saved))
+    numbers = restarted.numbers
+    assert not restarted.warnings() and numbers.dissipated == numbers.work == numbers.deepest == 0.0
+    np.testing.assert_array_equal(restarted.slip, contact.slip)
+    assert numbers.energy > 0.0 and restarted.stable_step(1.0) == contact.stable_step(1.0)
 
 
 def test_a_state_without_this_contact_begins_without_history():
@@ -234,14 +237,14 @@ def test_a_state_without_this_contact_begins_without_history():
     take(contact)
     contact.kick(points, 1e-2)
     coarse = contact_of(1, NODES[:4], FACES[:1])
-    for other, state in (
+    for restarted, state in (
         (contact_of(1), {}),
         (coarse, contact.save()),
         (contact_of(2), contact.save()),
     ):
-        start = other.save()
-        other.load(other.beginning(state))
-        for key, array in other.save().items():
+        start = restarted.save()
+        restarted.load(restarted.beginning(state))
+        for key, array in restarted.save().items():
             np.testing.assert_array_equal(array, start[key])
 
 
@@ -262,8 +265,8 @@ def test_what_is_saved_comes_back():
     take(contact)
     contact.kick(points, 1e-2)
     saved = {key: array.copy() for key, array in contact.save().items()}
-    other = contact_of(1, friction=0.5)
-    other.load(saved)
-    for key, array in other.save().items():
+    loaded = contact_of(1, friction=0.5)
+    loaded.load(saved)
+    for key, array in loaded.save().items():
         np.testing.assert_array_equal(array, saved[key])
-    assert other.stable_step(1.0) == contact.stable_step(1.0)
+    assert loaded.stable_step(1.0) == contact.stable_step(1.0)

@@ -1,4 +1,4 @@
-"""Contact with faces: what limits the step and warns, for particles of several radii."""
+"""Contact with faces: limits of the step and warnings, for particles of several radii."""
 
 import numpy as np
 import pytest
@@ -53,11 +53,11 @@ def test_particles_with_many_points_across_go_on_with_the_same_bits_after_a_rest
     x, y = np.meshgrid([0.0, 2.0, 4.0], [0.0, 2.0, 4.0])
     node = np.stack([x.ravel(), y.ravel(), 0.0 * x.ravel()], axis=1)
     face = np.array([[0, 1, 4, 3], [1, 2, 5, 4], [3, 4, 7, 6], [4, 5, 8, 7]])
-    # It comes from where the face across the corner is beyond three radii to where one of its
-    # points lies on that face, and has moved by less than a radius.
+    # At first the face across the corner is more than three radii away. The particle moves by less
+    # than a radius; then one of its points lies on that face.
     last = np.array([1.7, 1.7, 0.95])
     move = 0.499 * np.array([0.3, 0.3, -0.95]) / np.sqrt(0.3**2 + 0.3**2 + 0.95**2)
-    saved = []
+    states = []
     for restarts in (False, True):
         contact = contact_of(1, node, face, points=4)
         take(contact, node)
@@ -68,9 +68,9 @@ def test_particles_with_many_points_across_go_on_with_the_same_bits_after_a_rest
             take(contact, node)
         contact.kick(points_at([last], move[None]), 1.0)
         assert contact.near.weight[0, contact.near.nodes[0] == 8].sum() > 0.0
-        saved.append(contact.save())
-    for key, array in saved[0].items():
-        np.testing.assert_array_equal(array, saved[1][key])
+        states.append(contact.save())
+    for key, array in states[0].items():
+        np.testing.assert_array_equal(array, states[1][key])
 
 
 def test_spheres_with_several_points_across_are_refused():
@@ -88,8 +88,8 @@ def test_a_particle_is_spread_over_faces_of_a_surface_that_bends(angle, sign):
     take(contact, node)
     contact.kick(points, 1.0)
     share = (1.7 + 1 / 3 - 2.0) / 2.0 / 3.0  # of the right third, on the second face
-    beside = contact.near.weight[0, np.isin(contact.near.nodes[0], (2, 5))].sum()
-    assert beside == pytest.approx(share * np.cos(angle))
-    pushed = contact.near.gap[0]  # of a mean of the surface, which its outer third tilts
-    tilt = sign * 2.0 * np.sin(angle) * beside
-    assert pushed == pytest.approx(-0.1 - tilt, abs=1e-12)
+    second_weight = contact.near.weight[0, np.isin(contact.near.nodes[0], (2, 5))].sum()
+    assert second_weight == pytest.approx(share * np.cos(angle))
+    gap = contact.near.gap[0]  # m, to the mean surface, which the outer third tilts
+    tilt = sign * 2.0 * np.sin(angle) * second_weight
+    assert gap == pytest.approx(-0.1 - tilt, abs=1e-12)

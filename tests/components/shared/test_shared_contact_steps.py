@@ -8,25 +8,25 @@ from quintet.components.shared.contact.stable_step import highest_square
 
 
 def _bounce(share, mass):
-    """Largest energy of a particle pressed to a face of free nodes, in steps of a share of ours."""
+    """Growth of a displacement of a particle on a face of free nodes, at a share of our step."""
     node, face = NODES[[0, 1, 4, 3]], np.array([[0, 1, 2, 3]])
     depth = 1e-3
     contact = contact_of(1, node, face, mass=mass)
-    node, speed = node.copy(), np.zeros((4, 3))
-    stiff = 1.0 / (2.0 * RADIUS / MODULUS + THICK / MODULUS)
+    node, node_velocity = node.copy(), np.zeros((4, 3))
+    stiffness = 1.0 / (2.0 * RADIUS / MODULUS + THICK / MODULUS)
     points = points_at([(1.0, 1.0, RADIUS - 0.2 - depth)])
-    pressed = stiff * 0.2  # N, at 0.2 m
+    push = stiffness * 0.2  # N, at 0.2 m
     take(contact, node)
     contact.kick(points, 0.0)
     dt, largest = share * contact.stable_step(1e9), 0.0
     for _ in range(400):
         take(contact, node)
         contact.kick(points, dt)
-        points.velocity[0, 2] -= dt * pressed
-        speed = speed + dt * contact.reaction / mass
-        speed[:, 2] += dt * 0.25 * pressed / mass
+        points.velocity[0, 2] -= dt * push
+        node_velocity = node_velocity + dt * contact.reaction / mass
+        node_velocity[:, 2] += dt * 0.25 * push / mass
         points.place[:] += dt * points.velocity
-        node = node + dt * speed
+        node = node + dt * node_velocity
         gap = points.place[0, 2] - node[:, 2].mean() - RADIUS
         largest = max(largest, abs(gap + 0.2))
         if largest > 0.1:
@@ -46,25 +46,25 @@ def _chain(layers, mass, particle, spring=0.5):
     The spring of contact has `spring` N/m.
     """
     count = layers + 1
-    stiff, masses = np.zeros((count + 1, count + 1)), np.full(count + 1, mass)
+    stiffness, masses = np.zeros((count + 1, count + 1)), np.full(count + 1, mass)
     masses[[0, layers]] = 0.5 * mass
     masses[-1] = particle
     for k in range(layers):
-        stiff[k : k + 2, k : k + 2] += [[1.0, -1.0], [-1.0, 1.0]]
-    stiff[[0, 0, -1, -1], [0, -1, 0, -1]] += spring * np.array([1.0, -1.0, -1.0, 1.0])
+        stiffness[k : k + 2, k : k + 2] += [[1.0, -1.0], [-1.0, 1.0]]
+    stiffness[[0, 0, -1, -1], [0, -1, 0, -1]] += spring * np.array([1.0, -1.0, -1.0, 1.0])
     root = np.sqrt(masses)
-    return float(np.linalg.eigvalsh(stiff / root / root[:, None])[-1])
+    return float(np.linalg.eigvalsh(stiffness / root / root[:, None])[-1])
 
 
 @pytest.mark.parametrize("layers", [1, 2, 20])
 @pytest.mark.parametrize("particle", [0.1, 1.0, 10.0])
 @pytest.mark.parametrize("spring", [0.05, 0.5, 2.0, 10.0])
 def test_the_bound_of_both_sides_and_contact_is_above_the_exact_frequency(layers, particle, spring):
-    added = spring / particle, spring / 0.5
-    exact, bound = _chain(layers, 1.0, particle, spring), highest_square((0.0, 4.0), added)
+    contact_terms = spring / particle, spring / 0.5
+    exact, bound = _chain(layers, 1.0, particle, spring), highest_square((0.0, 4.0), contact_terms)
     assert exact <= bound * (1.0 + 1e-12)
     assert bound < 1.2 * exact
-    assert bound <= 4.0 + sum(added)
+    assert bound <= 4.0 + sum(contact_terms)
 
 
 def test_the_bound_is_exact_for_one_layer_on_a_heavy_particle():
@@ -74,10 +74,10 @@ def test_the_bound_is_exact_for_one_layer_on_a_heavy_particle():
 
 
 def _roll(share, mass):
-    """Energies of a sphere that sticks to a face, over the first, in steps of a share of ours."""
+    """Energies over the first one of a sphere that sticks to a face, at a share of our step."""
     node, face = NODES[[0, 1, 4, 3]].copy(), np.array([[0, 1, 2, 3]])
     contact = contact_of(1, node, face, mass=mass, friction=1e6, spheres=True)
-    points, along, energies = spheres_at([(1.0, 1.0, RADIUS - 1e-3)]), 0.0, []
+    points, face_speed, energies = spheres_at([(1.0, 1.0, RADIUS - 1e-3)]), 0.0, []
     take(contact, node)
     contact.kick(points, 0.0)
     points.velocity[:] = 0.0
@@ -87,18 +87,18 @@ def _roll(share, mass):
         take(contact, node)
         contact.kick(points, dt)
         points.velocity[0, 2] = 0.0  # held in height
-        along += dt * contact.reaction[:, 0].sum() / (4.0 * mass)
-        node[:, 0] += dt * along
+        face_speed += dt * contact.reaction[:, 0].sum() / (4.0 * mass)
+        node[:, 0] += dt * face_speed
         points.place[0, 0] += dt * points.velocity[0, 0]
         spin = (points.spin[0, 1] * RADIUS) ** 2 / 2.5
-        energies.append(points.velocity[0, 0] ** 2 + spin + 4.0 * mass * along**2)
+        energies.append(points.velocity[0, 0] ** 2 + spin + 4.0 * mass * face_speed**2)
     return np.array(energies) / 1e-12
 
 
 @pytest.mark.parametrize("mass", [0.25, 1e9])  # of a node
 def test_the_predicted_step_is_where_a_sphere_that_sticks_becomes_unstable(mass):
     energies = _roll(0.95, mass)
-    # Velocities of a step's middle exceed those of the motion by 1/√(1 - (ω dt/2)²).
+    # Velocities at mid-step exceed those of the motion by 1/√(1 - (ω dt/2)²).
     assert energies.max() < 1.0 / (1.0 - 0.95**2)
     assert energies[200:].max() < 1.01 * energies[:200].max()
     assert _roll(1.01, mass).max() > 1e3
@@ -116,8 +116,8 @@ def test_a_sphere_is_pushed_by_hertz_and_holds_his_energy():
         force = 4.0 / 3.0 * modulus * RADIUS**0.5 * depth**1.5
         assert points.velocity[0, 2] * mass / 1e-3 == pytest.approx(force, rel=1e-12)
         assert contact.numbers.energy == pytest.approx(0.4 * force * depth, rel=1e-12)
-        stiff = 2.0 * modulus * (RADIUS * depth) ** 0.5
-        assert contact.numbers.impact == pytest.approx(stiff / mass, rel=1e-12)
+        stiffness = 2.0 * modulus * (RADIUS * depth) ** 0.5
+        assert contact.numbers.impact == pytest.approx(stiffness / mass, rel=1e-12)
 
 
 def test_the_step_of_a_sphere_foresees_how_deep_it_will_come():
@@ -129,8 +129,8 @@ def test_the_step_of_a_sphere_foresees_how_deep_it_will_come():
     deepest = (15.0 * mass * speed**2 / (16.0 * modulus * RADIUS**0.5)) ** 0.4
     stiffest = 2.0 * modulus * (RADIUS * deepest) ** 0.5
     assert contact.numbers.impact == pytest.approx(stiffest / mass, rel=1e-12)
-    limited = 2.0 / (stiffest / mass) ** 0.5
-    assert contact.stable_step(1e9) == pytest.approx(limited, rel=1e-6)
+    dt = 2.0 / (stiffest / mass) ** 0.5
+    assert contact.stable_step(1e9) == pytest.approx(dt, rel=1e-6)
 
 
 def test_wide_contact_of_a_sphere_is_warned_of():
@@ -145,7 +145,7 @@ def test_wide_contact_of_a_sphere_is_warned_of():
 def test_no_energy_appears_as_a_loaded_tangential_spring_changes_its_stiffness():
     # A sphere is pressed in, sheared, pressed deeper and let go: its spring loses energy only.
     contact = contact_of(1, friction=1e6, spheres=True)
-    points, work, last = spheres_at([(1.0, 1.0, RADIUS)]), 0.0, np.zeros(3)
+    points, work, last_force = spheres_at([(1.0, 1.0, RADIUS)]), 0.0, np.zeros(3)
     path = [(0.0, 1e-2), (1e-3, 1e-2), (1e-3, 4e-2), (1e-3, 1e-2), (2e-3, 1e-2), (2e-3, 1e-3)]
     x, steps = np.array([0.0, 0.0]), 200
     for target in map(np.array, path):
@@ -157,11 +157,11 @@ def test_no_energy_appears_as_a_loaded_tangential_spring_changes_its_stiffness()
             take(contact)
             contact.kick(points, 1.0)
             force = points.velocity[0] - (move[0], 0.0, -move[1])
-            work -= 0.5 * (force + last) @ (move[0], 0.0, -move[1])
-            last = force
-    lost = contact.numbers.dissipated
-    assert lost > 0.0
-    assert work == pytest.approx(contact.numbers.energy + lost, rel=2e-3)
+            work -= 0.5 * (force + last_force) @ (move[0], 0.0, -move[1])
+            last_force = force
+    dissipated = contact.numbers.dissipated
+    assert dissipated > 0.0
+    assert work == pytest.approx(contact.numbers.energy + dissipated, rel=2e-3)
 
 
 def test_a_particle_near_a_face_limits_the_step_before_it_touches():

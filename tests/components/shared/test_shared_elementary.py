@@ -1,4 +1,4 @@
-"""Elementary functions without branches against those of the library."""
+"""Elementary functions without branches, against those of numpy."""
 
 import numpy as np
 import pytest
@@ -8,7 +8,7 @@ from quintet.components.shared import elementary
 
 
 @njit
-def _each(x, y, out):
+def _evaluate(x, y, out):
     for k in range(len(x)):
         out[0, k] = elementary.logarithm(x[k])
         out[1, k] = elementary.exponential(y[k])
@@ -21,7 +21,7 @@ def test_logarithm_exponential_and_power_are_those_of_the_library():
     x = np.concatenate([np.logspace(-30, 30, 2001), np.linspace(0.5, 2.0, 2001)])
     y = np.linspace(-600.0, 600.0, len(x))
     out = np.empty((5, len(x)))
-    _each(x, y, out)
+    _evaluate(x, y, out)
     assert np.abs(out[0] - np.log(x)).max() < 1e-13 * np.log(1e30)
     assert out[1] == pytest.approx(np.exp(y), rel=1e-12)
     assert out[2] == pytest.approx(x**0.168, rel=1e-12)
@@ -31,6 +31,6 @@ def test_logarithm_exponential_and_power_are_those_of_the_library():
 
 def test_at_their_ends_they_stay_finite():
     x, y, out = np.array([0.0, -1.0, 1.0]), np.array([-1e9, 1e9, 0.0]), np.empty((5, 3))
-    _each(x, y, out)
+    _evaluate(x, y, out)
     assert np.isfinite(out).all()
     assert out[0, 2] == 0.0 and out[1, 2] == 1.0 and out[2, 0] < 1e-40

@@ -90,7 +90,7 @@ def _six(m):
 def test_the_equation_of_state_has_its_hugoniot(name, speed, shock, pressure):
     """U_s = c + S u_p, p = ρ₀U_s u_p, ρ/ρ₀ = U_s/(U_s - u_p), e = u_p²/2: Rankine & Hugoniot."""
     law = solid(material(name))
-    u = 0.5 * speed  # m/s, of like on like
+    u = 0.5 * speed  # m/s, both bodies of the same material
     us = math.sqrt(law.c2) + law.s1 * u
     assert us == pytest.approx(shock, rel=1e-4)
     p = _pressure(us / (us - u) - 1.0, 0.5 * u * u, law)
@@ -123,11 +123,11 @@ def test_a_hugoniot_with_three_coefficients(name="steel"):
 
 def test_energy_at_a_steps_end_is_implicit_in_the_pressure():
     law = solid(material("aluminium"))
-    before, after, old, p = 1e4, 0.02, 0.01, 1e9
-    volume = (1.0 / (1.0 + after) - 1.0 / (1.0 + old)) / law.density
-    found = njit(lambda: eos.pressure_and_energy(after, before - 0.5 * p * volume, volume, law))()
-    assert found[0] == pytest.approx(_pressure(after, found[1], law), rel=1e-12)
-    assert found[1] == pytest.approx(before - 0.5 * (p + found[0]) * volume, rel=1e-12)
+    energy, mu_end, mu_start, p = 1e4, 0.02, 0.01, 1e9
+    volume = (1.0 / (1.0 + mu_end) - 1.0 / (1.0 + mu_start)) / law.density
+    result = njit(lambda: eos.pressure_and_energy(mu_end, energy - 0.5 * p * volume, volume, law))()
+    assert result[0] == pytest.approx(_pressure(mu_end, result[1], law), rel=1e-12)
+    assert result[1] == pytest.approx(energy - 0.5 * (p + result[0]) * volume, rel=1e-12)
 
 
 @pytest.mark.parametrize("mu", [-0.02, 1e-6, 0.1, 0.5])
@@ -183,20 +183,20 @@ def test_jaumanns_rate_turns_a_stress_with_the_material(axis):
     turn = np.eye(3)
     turn[i, i], turn[i, j], turn[j, i], turn[j, j] = c, -s, s, c
     for steps in (500, 1000):
-        found = _six(start)
+        stress = _six(start)
         for _ in range(steps):
-            found = _strained(found, tuple(spin.ravel()), 1e9, angle / steps)
-        errors.append(np.abs(_matrix(found) - turn @ start @ turn.T).max())
-        assert np.trace(_matrix(found)) == pytest.approx(0.0, abs=1e-12)
+            stress = _strained(stress, tuple(spin.ravel()), 1e9, angle / steps)
+        errors.append(np.abs(_matrix(stress) - turn @ start @ turn.T).max())
+        assert np.trace(_matrix(stress)) == pytest.approx(0.0, abs=1e-12)
     assert errors[0] < 4e-3 and errors[0] / errors[1] == pytest.approx(2.0, rel=0.02)
 
 
 def test_a_small_strain_gives_hookes_law():
     gradient = np.array([[1.0, 0.4, -0.2], [0.6, -0.5, 0.1], [0.0, 0.3, 0.2]]) * 1e-9
-    found = _matrix(_strained((0.0,) * 6, tuple(gradient.ravel()), 8e10, 1.0))
+    stress = _matrix(_strained((0.0,) * 6, tuple(gradient.ravel()), 8e10, 1.0))
     strain = 0.5 * (gradient + gradient.T)
     exact = 2.0 * 8e10 * (strain - np.trace(strain) / 3.0 * np.eye(3))
-    np.testing.assert_allclose(found, exact, rtol=1e-12, atol=1e-9)
+    np.testing.assert_allclose(stress, exact, rtol=1e-12, atol=1e-9)
 
 
 @pytest.mark.parametrize("name", PLASTIC)
@@ -205,18 +205,18 @@ def test_a_small_strain_gives_hookes_law():
 @pytest.mark.parametrize("dt", [1e-9, 1e-6, 10.0])
 def test_the_returned_stress_is_the_flow_stress(name, strain, excess, dt):
     law = solid(material(name))
-    warm = law.temperature + 50.0
-    soft = _softening(warm, law)
-    still = _flow(strain, 0.0, soft, law)[0]
+    temperature = law.temperature + 50.0
+    soft = _softening(temperature, law)
+    static_flow = _flow(strain, 0.0, soft, law)[0]
     shape = np.array([[2.0, 0.3, 0.1], [0.3, -1.5, 0.7], [0.1, 0.7, -0.5]])
-    shape *= excess * still / math.sqrt(1.5 * (shape * shape).sum())
-    s, delta, work = _returned(_six(shape), strain, warm, dt, law)
-    found = math.sqrt(1.5 * (_matrix(s) ** 2).sum())
+    shape *= excess * static_flow / math.sqrt(1.5 * (shape * shape).sum())
+    s, delta, work = _returned(_six(shape), strain, temperature, dt, law)
+    equivalent = math.sqrt(1.5 * (_matrix(s) ** 2).sum())
     assert delta > 0.0
-    assert found == pytest.approx(_flow(strain + delta, delta / dt, soft, law)[0], rel=1e-7)
-    assert found + 3.0 * law.shear * delta == pytest.approx(excess * still, rel=1e-10)
-    assert work == pytest.approx(found * delta)
-    np.testing.assert_allclose(_matrix(s) / found, shape / (excess * still), atol=1e-12)
+    assert equivalent == pytest.approx(_flow(strain + delta, delta / dt, soft, law)[0], rel=1e-7)
+    assert equivalent + 3.0 * law.shear * delta == pytest.approx(excess * static_flow, rel=1e-10)
+    assert work == pytest.approx(equivalent * delta)
+    np.testing.assert_allclose(_matrix(s) / equivalent, shape / (excess * static_flow), atol=1e-12)
 
 
 def test_below_the_flow_stress_nothing_yields_and_melt_bears_no_shear():
@@ -244,7 +244,7 @@ def test_the_greatest_principal_stress_is_an_eigenvalue():
 
 
 def test_damage_is_the_share_of_the_strain_at_fracture():
-    made = Material(
+    alloy = Material(
         density=7850.0,
         youngs_modulus=2e11,
         poissons_ratio=0.3,
@@ -252,18 +252,18 @@ def test_damage_is_the_share_of_the_strain_at_fracture():
         damage=JohnsonCookDamage(d1=0.05, d2=3.44, d3=-2.12, d4=0.002, d5=0.61),
         specific_heat=450.0,
     )
-    law = solid(made)
-    s = (2.0, -1.0, -1.0, 0.0, 0.0, 0.0)  # uniaxial, 3 over all; its mean is a third of that
+    law = solid(alloy)
+    s = (2.0, -1.0, -1.0, 0.0, 0.0, 0.0)  # uniaxial: equivalent stress 3, mean stress 1
     fracture_strain = (0.05 + 3.44 * math.exp(-2.12 / 3.0)) * (1.0 + 0.002 * math.log(1e3))
     fracture_strain *= 1.0 + 0.61 * 100.0 / 1502.0
-    found = _damage(s, -1.0, 1e-3, 398.0, 1e-6, law)
-    assert found == pytest.approx(1e-3 / fracture_strain, rel=1e-12)
+    damage = _damage(s, -1.0, 1e-3, 398.0, 1e-6, law)
+    assert damage == pytest.approx(1e-3 / fracture_strain, rel=1e-12)
     assert _damage(s, -1.0, 1e-3, 398.0, 1e-6, solid(material("steel"))) == 0.0
 
 
 def test_a_strain_at_fracture_below_zero_breaks_the_material_at_once():
-    """6061-T6 of Lesuer, Kay & LeBlanc (2001) has D₁ = -0.77: at high tension nothing is borne."""
-    made = Material(
+    """6061-T6 of Lesuer, Kay & LeBlanc (2001) has D₁ = -0.77: at high tension it fails at once."""
+    alloy = Material(
         density=2703.0,
         youngs_modulus=7e10,
         poissons_ratio=0.3,
@@ -271,7 +271,7 @@ def test_a_strain_at_fracture_below_zero_breaks_the_material_at_once():
         damage=JohnsonCookDamage(d1=-0.77, d2=1.45, d3=-0.47, d4=0.0, d5=1.6),
         specific_heat=896.0,
     )
-    law, s = solid(made), (2.0, -1.0, -1.0, 0.0, 0.0, 0.0)
+    law, s = solid(alloy), (2.0, -1.0, -1.0, 0.0, 0.0, 0.0)
     fracture_strain = -0.77 + 1.45 * math.exp(-0.47 / 3.0)
     assert fracture_strain == pytest.approx(0.47, abs=0.01)
     assert _damage(s, -1.0, 1e-3, 298.0, 1e-6, law) == pytest.approx(1e-3 / fracture_strain)
@@ -281,7 +281,7 @@ def test_a_strain_at_fracture_below_zero_breaks_the_material_at_once():
 
 
 @pytest.mark.parametrize(
-    ("given", "rule"),
+    ("keys", "rule"),
     [
         ({}, "one of youngs_modulus and shear_modulus must be given"),
         ({"youngs_modulus": 1e9}, "with youngs_modulus poissons_ratio is needed"),
@@ -292,14 +292,14 @@ def test_a_strain_at_fracture_below_zero_breaks_the_material_at_once():
         ),
     ],
 )
-def test_a_material_that_lacks_something_is_refused(given, rule):
+def test_a_material_that_lacks_something_is_refused(keys, rule):
     with pytest.raises(ValueError, match=rule):
-        Material(density=1e3, **given)
+        Material(density=1e3, **keys)
 
 
 def test_moduli_follow_from_each_other():
-    made = Material(density=1e3, youngs_modulus=9e9, poissons_ratio=0.25)
-    assert made.shear == pytest.approx(3.6e9) and made.bulk == pytest.approx(6e9)
+    elastic = Material(density=1e3, youngs_modulus=9e9, poissons_ratio=0.25)
+    assert elastic.shear == pytest.approx(3.6e9) and elastic.bulk == pytest.approx(6e9)
     aluminium = material("aluminium")
     assert aluminium.bulk == pytest.approx(78.92e9, rel=1e-4)
 
@@ -310,12 +310,12 @@ class Part:
 
 
 @pytest.mark.parametrize(
-    ("value", "said"),
+    ("value", "message"),
     [
         ("stele", "part.material should be a material of the library (steel, aluminium,"),
         ({"densty": 7800.0}, "part.material.densty is not known. Did you mean density?"),
     ],
 )
-def test_a_wrong_material_is_refused_once_and_in_words(value, said):
-    checked, (mistake,) = read(Part, {"material": value}, "part")
-    assert checked is None and mistake.startswith(said)
+def test_a_wrong_material_is_refused_once_and_in_words(value, message):
+    parsed, (mistake,) = read(Part, {"material": value}, "part")
+    assert parsed is None and mistake.startswith(message)

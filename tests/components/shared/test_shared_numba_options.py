@@ -1,4 +1,4 @@
-"""What a kernel computes depends on its own options, and not on who calls it first."""
+"""The result of a kernel depends on its own options, not on its first caller."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""Rows of neighbours of any width, packed and filled up; lattices; single precision."""
+"""Packed rows of neighbours of any width; lattices; single precision."""
 
 from typing import NamedTuple
 
@@ -13,7 +13,7 @@ from quintet.components.shared.threads import Team
 
 
 @njit
-def packed(source, neighbour, count, filling, width):  # type: ignore[no-untyped-def]
+def pack(source, neighbour, count, filling, width):  # type: ignore[no-untyped-def]
     rows = empty_rows(count, width, source.dtype)
     full = pack_rows(0, count, neighbour, source, filling, rows)
     return rows[:full], pack_values(0, count, neighbour, source[:, 0], np.ones(count))
@@ -25,7 +25,7 @@ def test_rows_of_any_width_are_packed_and_filled_up(width: int, count: int) -> N
     random = np.random.default_rng(1)
     source, neighbour = random.random((30, width)), random.integers(0, 30, 12).astype(np.int32)
     filling = tuple(float(-d) for d in range(width))
-    rows, values = packed(source, neighbour, count, filling, width)
+    rows, values = pack(source, neighbour, count, filling, width)
     assert len(rows) == -(-count // PAIRS) * PAIRS
     np.testing.assert_array_equal(rows[:count], source[neighbour[:count]])
     assert (rows[count:] == filling).all()
@@ -37,9 +37,9 @@ def test_a_box_is_filled_cell_by_cell_and_beyond() -> None:
     assert [axis.tolist() for axis in axes] == [[-0.25, 0.25, 0.75], [0.5], [0.0, 1.0]]
     points = lattice_points(axes)
     assert points[:4, 0].tolist() == [-0.25, 0.25, 0.75, -0.25] and points[3, 2] == 1.0
-    other = lattice_points(axes, x_fastest=False)
-    assert {*map(tuple, points.tolist())} == {*map(tuple, other.tolist())}
-    assert other[1].tolist() == [-0.25, 0.5, 1.0]
+    reordered = lattice_points(axes, x_fastest=False)
+    assert {*map(tuple, points.tolist())} == {*map(tuple, reordered.tolist())}
+    assert reordered[1].tolist() == [-0.25, 0.5, 1.0]
     assert spread_evenly(0.0, 1.0, 1).tolist() == [0.5]
 
 
@@ -55,9 +55,9 @@ class Outer(NamedTuple):
 
 
 def test_laws_are_rounded_with_what_is_in_them() -> None:
-    found = rounded(Outer(Inner(0.1, True), np.array([0.1]), None))
-    assert found.inner.length == np.float32(0.1) and found.inner.choice is True
-    assert found.seen.dtype == np.float32 and found.none is None
+    law = rounded(Outer(Inner(0.1, True), np.array([0.1]), None))
+    assert law.inner.length == np.float32(0.1) and law.inner.choice is True
+    assert law.seen.dtype == np.float32 and law.none is None
     assert rounded(None) is None
 
 

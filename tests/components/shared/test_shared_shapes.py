@@ -1,4 +1,4 @@
-"""Shapes contain what they enclose, and scenes and kinds spell each of them one way."""
+"""Shapes contain their volume; all scenes and kinds use the same keys for a shape."""
 
 import math
 from types import SimpleNamespace
@@ -41,12 +41,12 @@ def test_volume_and_inertia_are_those_of_what_a_shape_contains(name):
     edges = [high - low for low, high in zip(*shape.bounds, strict=True)]
     axes = [edge * ((np.arange(60) + 0.5) / 60 - 0.5) for edge in edges]
     arm = np.stack([place.ravel() for place in np.meshgrid(*axes, indexing="ij")])
-    middle = 0.5 * np.sum(shape.bounds, axis=0)
-    within = arm[:, shape.contains(*(arm + middle[:, None]))]
+    centre = 0.5 * np.sum(shape.bounds, axis=0)
+    inside = arm[:, shape.contains(*(arm + centre[:, None]))]
     cell = math.prod(edges) / 60**3
-    assert shape.volume == pytest.approx(cell * within.shape[1], rel=2e-2)
-    second = within @ within.T * cell
-    inertia = np.trace(second) * np.eye(3) - second
+    assert shape.volume == pytest.approx(cell * inside.shape[1], rel=2e-2)
+    second_moment = inside @ inside.T * cell
+    inertia = np.trace(second_moment) * np.eye(3) - second_moment
     assert shape.inertia == pytest.approx(inertia, rel=3e-2, abs=1e-3 * np.trace(inertia))
 
 
@@ -58,8 +58,8 @@ def test_edges_and_middles_of_boxes_are_those_of_decimal_numbers():
 
 def test_a_polygon_fills_its_area_whichever_way_its_corners_go():
     corners = ((0.0, 0.0), (0.3, 0.0), (0.0, 0.2))
-    for way in (corners, corners[::-1]):
-        polygon = Polygon(corners=way, origin=(1.0, 2.0, 3.0))
+    for ordered_corners in (corners, corners[::-1]):
+        polygon = Polygon(corners=ordered_corners, origin=(1.0, 2.0, 3.0))
         low, high = polygon.bounds
         assert polygon.share * 0.3 * 0.2 == pytest.approx(0.03)
         assert area_moments(polygon.outline).area == pytest.approx(0.03)

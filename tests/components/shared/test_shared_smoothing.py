@@ -1,4 +1,4 @@
-"""Smoothing kernels: their sums, their gradients, and other lengths."""
+"""Smoothing kernels: sums, gradients, and other smoothing lengths."""
 
 import math
 
@@ -17,7 +17,7 @@ def test_a_kernel_sums_to_one(dimensions: int, kernel: kernels.Kernel) -> None:
     line = 0.1 * np.arange(-6, 7)
     x, y, z = np.meshgrid(line, line if dimensions == 3 else np.zeros(1), line)
     r2 = (x * x + y * y + z * z).ravel()
-    values = [kernels.kernel.py_func(float(one), law) for one in r2]
+    values = [kernels.kernel.py_func(float(square), law) for square in r2]
     assert sum(values) * 0.1**dimensions == pytest.approx(1.0, abs=2e-4)
 
 
@@ -44,9 +44,9 @@ def test_a_kernel_ends_at_its_support(kernel: kernels.Kernel) -> None:
 def test_a_kernel_of_another_length_is_the_one_made_with_it(
     dimensions: int, kernel: kernels.Kernel
 ) -> None:
-    found = kernels.with_length.py_func(smoothing(kernel, dimensions, 0.15), 0.2, dimensions)
-    for number, other in zip(found, smoothing(kernel, dimensions, 0.2), strict=True):
-        assert number is other or number == pytest.approx(other, rel=1e-14)
+    law = kernels.with_length.py_func(smoothing(kernel, dimensions, 0.15), 0.2, dimensions)
+    for number, expected in zip(law, smoothing(kernel, dimensions, 0.2), strict=True):
+        assert number is expected or number == pytest.approx(expected, rel=1e-14)
 
 
 def test_normalisation_of_the_cubic_spline_is_monaghans() -> None:
@@ -81,7 +81,7 @@ def sheared_sum(kernel: kernels.Kernel, dimensions: int, strain: float) -> float
 def test_rows_of_particles_resist_shear_least_with_the_quintic_spline(
     kernel: kernels.Kernel, dimensions: int, stiffness: float
 ) -> None:
-    """Density rises by half of this times the square of a strain at constant volume."""
+    """Density rises by half the stiffness times the square of a strain at constant volume."""
     strain = 0.02
     ends = sum(sheared_sum(kernel, dimensions, sign * strain) for sign in (-1.0, 1.0))
     curvature = (ends - 2.0 * sheared_sum(kernel, dimensions, 0.0)) / strain**2
@@ -95,8 +95,8 @@ def test_single_precision_stays_single() -> None:
     )
 
     @njit
-    def both(r2, per_r, law):  # type: ignore[no-untyped-def]
+    def kernel_and_gradient(r2, per_r, law):  # type: ignore[no-untyped-def]
         return kernels.kernel(r2, law), kernels.gradient(r2, per_r, law)
 
-    both(np.float32(1.0), np.float32(1.0), single)
-    assert str(both.nopython_signatures[0].return_type) == "UniTuple(float32 x 2)"
+    kernel_and_gradient(np.float32(1.0), np.float32(1.0), single)
+    assert str(kernel_and_gradient.nopython_signatures[0].return_type) == "UniTuple(float32 x 2)"

@@ -1,4 +1,4 @@
-"""A team hands out each row once, and tells what came of it in the order of the rows."""
+"""A team hands out each row once, and returns results in the order of the rows."""
 
 from itertools import pairwise
 from threading import Barrier, get_ident
@@ -12,24 +12,24 @@ from quintet.components.shared.threads import Team
 @pytest.mark.parametrize("size", [1, 2, 3])
 @pytest.mark.parametrize("rows", [0, 1, 19, 20, 1000])
 def test_each_row_is_handed_out_once(rows: int, size: int) -> None:
-    done = np.zeros(rows, int)
+    visits = np.zeros(rows, int)
 
     def count(first: int, last: int, step: int) -> tuple[int, int]:
-        done[first:last] += step
+        visits[first:last] += step
         return first, last
 
-    found = Team(size, fewest=10).run(count, rows, 1)
-    assert (done == 1).all()
-    assert found[0][0] == 0 and found[-1][1] == rows
-    assert all(one[1] == following[0] for one, following in pairwise(found))
+    spans = Team(size, fewest=10).run(count, rows, 1)
+    assert (visits == 1).all()
+    assert spans[0][0] == 0 and spans[-1][1] == rows
+    assert all(span[1] == next_span[0] for span, next_span in pairwise(spans))
 
 
 @pytest.mark.parametrize("size", [2, 3])
 def test_as_many_threads_work_as_were_asked_for(size: int) -> None:
-    meet = Barrier(size)
+    barrier = Barrier(size)
 
     def wait(first: int, last: int) -> int:
-        meet.wait(5.0)
+        barrier.wait(5.0)
         return get_ident()
 
     assert len(set(Team(size, fewest=1, shares=1).run(wait, size))) == size

@@ -1,4 +1,4 @@
-"""Bodies filled with samples: their volume, their spacing, their skin."""
+"""Bodies filled with samples: volume, spacing, skin."""
 
 import math
 
@@ -52,9 +52,9 @@ def test_a_box_keeps_the_spacing_that_divides_it():
     arm, _, volume = fill(BOX, np.array([0.4, 0.3, 0.2]), 0.1, DEEP)
     assert len(arm) == 4 * 3 * 2
     np.testing.assert_allclose(volume, 1e-3, rtol=1e-12)
-    apart = np.linalg.norm(arm[:, None] - arm[None], axis=2) + np.eye(len(arm))
-    assert apart.min() == pytest.approx(0.1, rel=1e-12)
-    # The outermost lie half a spacing below the faces.
+    distance = np.linalg.norm(arm[:, None] - arm[None], axis=2) + np.eye(len(arm))
+    assert distance.min() == pytest.approx(0.1, rel=1e-12)
+    # The outermost samples lie half a spacing below the faces.
     np.testing.assert_allclose(np.abs(arm).max(axis=0), [0.15, 0.1, 0.05], rtol=1e-12)
 
 
@@ -63,27 +63,27 @@ def test_spacing_is_rounded_to_divide_the_edges():
     assert len(arm) == 27
 
 
-@pytest.mark.parametrize("across", [3, 4, 5, 6, 8, 10])
-def test_a_sphere_has_as_many_samples_as_it_has_cubes_on_shells(across):
-    arm, _, _ = fill(SPHERE, np.full(3, float(across)), 1.0, DEEP)
-    assert len(arm) == pytest.approx(math.pi / 6.0 * across**3, rel=0.02)
+@pytest.mark.parametrize("diameter", [3, 4, 5, 6, 8, 10])
+def test_a_sphere_has_as_many_samples_as_it_has_cubes_on_shells(diameter):
+    arm, _, _ = fill(SPHERE, np.full(3, float(diameter)), 1.0, DEEP)
+    assert len(arm) == pytest.approx(math.pi / 6.0 * diameter**3, rel=0.02)
     outermost = np.linalg.norm(arm, axis=1).max()
-    assert outermost == pytest.approx(0.5 * across - 0.5)
-    apart = np.linalg.norm(arm[:, None] - arm[None], axis=2) + 9.0 * np.eye(len(arm))
-    assert apart.min() > 0.6
+    assert outermost == pytest.approx(0.5 * diameter - 0.5)
+    distance = np.linalg.norm(arm[:, None] - arm[None], axis=2) + 9.0 * np.eye(len(arm))
+    assert distance.min() > 0.6
 
 
 @pytest.mark.parametrize("shape", [SPHERE, BOX])
 def test_only_a_skin_of_the_depth_is_filled(shape):
     size, spacing, depth = np.full(3, 1.0), 0.05, 0.12
     arm, _, volume = fill(shape, size, spacing, depth)
-    whole, _, whole_volume = fill(shape, size, spacing, DEEP)
+    all_arms, _, whole_volume = fill(shape, size, spacing, DEEP)
     if shape == BOX:
-        below = (0.5 - np.abs(whole)).min(axis=1)
+        depths = (0.5 - np.abs(all_arms)).min(axis=1)
     else:
-        below = 0.5 - np.linalg.norm(whole, axis=1)
-    np.testing.assert_array_equal(arm, whole[below < depth])
-    assert 0 < len(arm) < len(whole)
+        depths = 0.5 - np.linalg.norm(all_arms, axis=1)
+    np.testing.assert_array_equal(arm, all_arms[depths < depth])
+    assert 0 < len(arm) < len(all_arms)
     np.testing.assert_array_equal(volume, whole_volume[: len(volume)])
 
 
@@ -113,11 +113,11 @@ def test_mirror_points_lie_as_far_outside(shape, size):
     size = np.array(size)
     arm, normal, _ = fill(shape, size, 0.05, 0.1)
     image = mirrors(shape, size, arm, normal)
-    middle = 0.5 * (arm + image)
+    midpoint = 0.5 * (arm + image)
     if shape == BOX:
-        assert np.isclose(np.abs(middle), 0.5 * size).any(axis=1).all()
-        assert (np.abs(middle) <= 0.5 * size + 1e-12).all()
+        assert np.isclose(np.abs(midpoint), 0.5 * size).any(axis=1).all()
+        assert (np.abs(midpoint) <= 0.5 * size + 1e-12).all()
     else:
-        np.testing.assert_allclose(np.linalg.norm(middle, axis=1), 0.2, rtol=1e-12)
+        np.testing.assert_allclose(np.linalg.norm(midpoint, axis=1), 0.2, rtol=1e-12)
     outside = np.abs(image) > 0.5 * size if shape == BOX else np.linalg.norm(image, axis=1) > 0.2
     assert (outside.any(axis=1) if shape == BOX else outside).all()

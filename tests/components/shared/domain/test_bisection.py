@@ -1,4 +1,4 @@
-"""Cells shared out among ranks: balanced, near each other, the same whatever the order."""
+"""Cells distributed among ranks: balanced, compact, independent of the cells' order."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Space cut between rows of cells: balanced, without gaps, every rank with a part."""
+"""Space cut between rows of cells: balanced, without gaps, a part for every rank."""
 
 import numpy as np
 import pytest
@@ -9,7 +9,7 @@ from quintet.interfaces.errors import StepError
 
 
 class Alone:
-    """Stands for the communicator of several ranks, all of whose rows are here."""
+    """Stand-in for the communicator of several ranks; this process holds all rows."""
 
     def __init__(self, size):
         self.size = size
@@ -44,9 +44,9 @@ def test_heavy_rows_are_shared_out_by_their_weight():
 def test_what_lies_far_outside_has_an_owner():
     cells = box(8, 4, 2)
     cuts = cut_between_rows(Alone(4), cells, np.ones(64, np.int64))
-    far = np.array([[-1000, 0, 0], [1000, 0, 0], [0, 10**9, -(10**9)]])
-    assert set(owners(cuts, far)) <= {0, 1, 2, 3}
-    assert owners(cuts, far)[0] < 2 <= owners(cuts, far)[1]
+    far_cells = np.array([[-1000, 0, 0], [1000, 0, 0], [0, 10**9, -(10**9)]])
+    assert set(owners(cuts, far_cells)) <= {0, 1, 2, 3}
+    assert owners(cuts, far_cells)[0] < 2 <= owners(cuts, far_cells)[1]
 
 
 def test_all_weight_in_two_cells_is_one_for_each():

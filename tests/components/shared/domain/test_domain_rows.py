@@ -1,4 +1,4 @@
-"""Rows on several real ranks: halos, gathering, moving; the same bits on any number of ranks."""
+"""Rows on several MPI ranks: halos, gathering, migration; the same bits on any number of ranks."""
 
 import json
 from pathlib import Path
@@ -20,18 +20,18 @@ def results(tmp_path_factory, on_ranks):
 
 @pytest.mark.parametrize("name", ["near", "points", "sum", "extremes", "count", "moved", "odd"])
 def test_the_number_of_ranks_changes_no_bit(results, name):
-    alone, *several = (result[name] for result in results)
-    assert all(several_ranks.tobytes() == alone.tobytes() for several_ranks in several)
+    on_one_rank, *on_more_ranks = (result[name] for result in results)
+    assert all(values.tobytes() == on_one_rank.tobytes() for values in on_more_ranks)
 
 
 def test_rows_come_back_in_the_order_of_their_ids(results):
-    alone, *several = results
+    on_one_rank, *on_more_ranks = results
     random = np.random.default_rng(5)
     points, values = random.random((400, 3)), random.normal(size=(400, 1))
-    assert (alone["points"] == points).all()
-    assert (alone["moved"] == points).all()
+    assert (on_one_rank["points"] == points).all()
+    assert (on_one_rank["moved"] == points).all()
     near = ((points - points[:, None]) ** 2).sum(axis=2) < 0.15**2
-    assert several[0]["near"] == pytest.approx(near @ (values[:, 0] + 2.0), abs=1e-12)
+    assert on_more_ranks[0]["near"] == pytest.approx(near @ (values[:, 0] + 2.0), abs=1e-12)
 
 
 def test_sums_extremes_and_counts_are_those_of_all_rows(results):
@@ -56,35 +56,35 @@ def counts():
 
 rank, rows = MPI.COMM_WORLD.rank, [np.arange(4), np.arange(4)]
 rows[rank] = np.arange(0)
-found = [counts()]
+counted = [counts()]
 halo = Halo(MPI.COMM_WORLD, rows, rows, (3, 1))
 for _ in range(5):
     halo.exchange(np.zeros((4, 3)), np.zeros((4, 1)))
-found.append(counts())
+counted.append(counts())
 least(MPI.COMM_WORLD, np.zeros(7))
-found.append(counts())
+counted.append(counts())
 share(MPI.COMM_WORLD, np.zeros(10 + 5 * rank))
-found.append(counts())
+counted.append(counts())
 send_rows(MPI.COMM_WORLD, [np.zeros((3 - rank, 2)), np.zeros((6, 2))])
-found.append(counts())
+counted.append(counts())
 if rank:
     time.sleep(0.5)
 least(MPI.COMM_WORLD, np.zeros(7))
-found = MPI.COMM_WORLD.gather((found, WAITED.seconds, WAITED.processor))
+counted = MPI.COMM_WORLD.gather((counted, WAITED.seconds, WAITED.processor))
 if rank == 0:
-    print(json.dumps(found))
+    print(json.dumps(counted))
 """
 
 
 def test_what_a_rank_sends_and_waits_for_is_counted(tmp_path, on_ranks):
     program = tmp_path / "counting.py"
     program.write_text(COUNTING)
-    (zero, waited, polled), (one, *_) = json.loads(on_ranks(program, 2))
-    none, after_halo = [0, 0, 0, 0], [5, 5 * 4 * 4 * 8, 0, 0]
-    assert zero[:3] == one[:3] == [none, after_halo, [5, 640, 1, 0]]
-    assert (zero[3], one[3]) == ([5, 640, 3, 15 * 8], [5, 640, 3, 10 * 8])
+    (counts_of_0, waited, polled), (counts_of_1, *_) = json.loads(on_ranks(program, 2))
+    at_start, after_halo = [0, 0, 0, 0], [5, 5 * 4 * 4 * 8, 0, 0]
+    assert counts_of_0[:3] == counts_of_1[:3] == [at_start, after_halo, [5, 640, 1, 0]]
+    assert (counts_of_0[3], counts_of_1[3]) == ([5, 640, 3, 15 * 8], [5, 640, 3, 10 * 8])
     # Rank 0 sends 6 rows of two numbers, rank 1 the 2 that go to rank 0.
-    assert (zero[4], one[4]) == ([6, 640 + 96, 5, 120], [6, 640 + 32, 5, 80])
+    assert (counts_of_0[4], counts_of_1[4]) == ([6, 640 + 96, 5, 120], [6, 640 + 32, 5, 80])
     assert 0.4 <= waited and 0.0 < polled <= waited + 0.01
 
 

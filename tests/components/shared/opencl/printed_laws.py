@@ -1,4 +1,4 @@
-"""Runs a law on random arguments twice: as numba compiles it, and printed, on an OpenCL device."""
+"""Run a law on random arguments twice: compiled by numba, and printed for an OpenCL device."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
@@ -26,7 +26,7 @@ ROWS = 300
 
 
 class Between(NamedTuple):
-    """A random argument; `logarithmic`: as many in each decade."""
+    """A random argument; if `logarithmic`, each decade is equally likely."""
 
     low: float
     high: float
@@ -34,7 +34,7 @@ class Between(NamedTuple):
 
 
 def vector(size: float) -> tuple[Between, ...]:
-    """Return three numbers, each as large as `size` at most."""
+    """Return three random numbers between -size and size."""
     return (Between(-size, size),) * 3
 
 
@@ -42,8 +42,8 @@ def vector(size: float) -> tuple[Between, ...]:
 class Law:
     """A law and its arguments: numbers, tuples and named tuples, some of them random.
 
-    `ulp` is how far results may be apart, in units of the last place of the larger one; 0: none. Of
-    a law that `cancels` digits it is the last place of the largest number that goes in or out.
+    `ulp` is the largest difference of results, in units of the last place of the larger one. If the
+    law `cancels` digits, it is the last place of the largest number among arguments and results.
     """
 
     function: Any
@@ -59,19 +59,19 @@ class Law:
 
 
 def example(argument: Any) -> Any:
-    """Return the argument with numbers in place of random ones."""
+    """Return the argument with its random parts replaced by fixed numbers."""
     if isinstance(argument, Between):
         return argument.low
-    return mapped(example, argument) if isinstance(argument, tuple) else argument
+    return map_items(example, argument) if isinstance(argument, tuple) else argument
 
 
-def mapped(function: Callable[[Any], Any], values: Any) -> Any:
+def map_items(function: Callable[[Any], Any], values: Any) -> Any:
     """Apply a function to the items of a (named) tuple."""
     items = map(function, values)
     return type(values)(*items) if hasattr(values, "_fields") else tuple(items)
 
 
-def drawn(argument: Any, random: np.random.Generator) -> Any:
+def draw(argument: Any, random: np.random.Generator) -> Any:
     """Draw the random parts of an argument."""
     if isinstance(argument, Between):
         low, high, logarithmic = argument
@@ -79,26 +79,26 @@ def drawn(argument: Any, random: np.random.Generator) -> Any:
             return float(np.exp(random.uniform(np.log(low), np.log(high))))
         return float(random.uniform(low, high))
     if isinstance(argument, tuple):
-        return mapped(lambda each: drawn(each, random), argument)
+        return map_items(lambda item: draw(item, random), argument)
     return argument
 
 
 def leaves(value: Any) -> Iterator[float]:
-    """Numbers of a value, in the order in which structs have them."""
+    """Numbers of a value, in the order of its struct."""
     if isinstance(value, tuple):
-        for each in value:
-            yield from leaves(each)
+        for item in value:
+            yield from leaves(item)
     elif value is not None:
         yield float(value)
 
 
-def compiled(law: Any) -> Any:
-    """Compile a law by numba, and those that it calls, without liberties: no sum is reordered."""
+def compile_law(law: Any) -> Any:
+    """Compile a law and the laws that it calls by numba; no sum is reordered."""
     python = getattr(law, "py_func", law)
     if python not in _compiled:
         names = python.__code__.co_names
         laws = {
-            name: compiled(python.__globals__[name])
+            name: compile_law(python.__globals__[name])
             for name in names
             if isinstance(python.__globals__.get(name), Dispatcher)
             and python.__globals__[name].py_func is not python  # a field may have its name
@@ -113,14 +113,16 @@ def compiled(law: Any) -> Any:
 _compiled: dict[Any, Any] = {}
 
 
-def of_numba(law: Law, rows: list[tuple[Any, ...]]) -> np.ndarray:
-    """Results (rows, numbers) as numba computes them."""
-    function = compiled(law.function)
+def run_by_numba(law: Law, rows: list[tuple[Any, ...]]) -> np.ndarray:
+    """Results (rows, numbers) computed by numba."""
+    function = compile_law(law.function)
     return np.array([list(leaves(function(*row))) for row in rows])
 
 
-def of_device(laws: list[Law], drawn_rows: list[list[Any]], precision: str = "double") -> list[Any]:
-    """Results (rows, numbers) of each law as the device computes them, of one program."""
+def run_on_device(
+    laws: list[Law], drawn_rows: list[list[Any]], precision: str = "double"
+) -> list[Any]:
+    """Results (rows, numbers) of each law computed by the device, with one program."""
     cl, queue = opencl(), device_of("opencl").queue()
     program, kernels, real = Program(precision), [], np.float64  # type: ignore[arg-type]
     real = np.float64 if precision == "double" else np.float32
@@ -136,19 +138,23 @@ def of_device(laws: list[Law], drawn_rows: list[list[Any]], precision: str = "do
         inputs = np.array([list(leaves(row)) for row in rows], real)
         outputs = np.empty((len(rows), widths[number]), real)
         flags = cl.mem_flags
-        given = cl.Buffer(queue.context, flags.READ_ONLY | flags.COPY_HOST_PTR, hostbuf=inputs)
-        taken = cl.Buffer(queue.context, flags.WRITE_ONLY, size=outputs.nbytes)
-        getattr(compiled_program, f"run_{number}")(queue, (len(rows),), None, given, taken)
-        cl.enqueue_copy(queue, outputs, taken)
+        input_buffer = cl.Buffer(
+            queue.context, flags.READ_ONLY | flags.COPY_HOST_PTR, hostbuf=inputs
+        )
+        output_buffer = cl.Buffer(queue.context, flags.WRITE_ONLY, size=outputs.nbytes)
+        getattr(compiled_program, f"run_{number}")(
+            queue, (len(rows),), None, input_buffer, output_buffer
+        )
+        cl.enqueue_copy(queue, outputs, output_buffer)
         results.append(outputs)
     return results
 
 
 def kernel_of(program: Program, law: Law, name: str, kind: Type, number: int) -> tuple[str, int]:
-    """Print a kernel that calls a law for a row of arguments; tell how many numbers it gives."""
-    kinds = [program.add_type(type_of(example(each))) for each in law.arguments]
+    """Print a kernel that calls a law for a row of arguments; also return its number of results."""
+    kinds = [program.add_type(type_of(example(argument))) for argument in law.arguments]
     place = iter(range(10**6))
-    codes = [struct(each, place) for each in kinds if each != NONE]
+    codes = [struct(input_kind, place) for input_kind in kinds if input_kind != NONE]
     inputs = next(place)
     fields = list(paths(kind, "value"))
     stores = "".join(f"    out[{len(fields)} * i + {k}] = {f};\n" for k, f in enumerate(fields))
@@ -166,25 +172,25 @@ def struct(kind: Type, place: Iterator[int]) -> str:
         number = f"in[{next(place)}]"
         return number if kind == REAL else f"({kind.name}){number}"
     assert isinstance(kind, Row | Record)
-    parts = kind.items if isinstance(kind, Row) else [each for _, each in kind.stored]
-    return f"(({kind.name}){{{', '.join(struct(each, place) for each in parts)}}})"
+    parts = kind.items if isinstance(kind, Row) else [part for _, part in kind.stored]
+    return f"(({kind.name}){{{', '.join(struct(part, place) for part in parts)}}})"
 
 
 def paths(kind: Type, path: str) -> Iterator[str]:
     """Code of each number of a value."""
     if isinstance(kind, Row | Record):
-        numbered = [(f"f{k}", each) for k, each in enumerate(getattr(kind, "items", ()))]
-        for name, each in kind.stored if isinstance(kind, Record) else numbered:
-            yield from paths(each, f"{path}.{identifier(name)}")
+        numbered = [(f"f{k}", part) for k, part in enumerate(getattr(kind, "items", ()))]
+        for name, part in kind.stored if isinstance(kind, Record) else numbered:
+            yield from paths(part, f"{path}.{identifier(name)}")
     else:
         yield path
 
 
 def ulps(first: np.ndarray, second: np.ndarray, scale: Any = 0.0) -> float:
     """Largest difference, in units of the last place of the larger number, or of a scale."""
-    apart = ~((first == second) | (np.isnan(first) & np.isnan(second)))
-    scale = np.broadcast_to(scale, first.shape)[apart]
-    first, second = first[apart], second[apart]
+    different = ~((first == second) | (np.isnan(first) & np.isnan(second)))
+    scale = np.broadcast_to(scale, first.shape)[different]
+    first, second = first[different], second[different]
     largest = np.maximum(np.maximum(np.abs(first), np.abs(second)), scale)
     return float((np.abs(first - second) / np.spacing(largest)).max(initial=0.0))
 

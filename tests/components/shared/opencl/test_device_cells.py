@@ -1,4 +1,4 @@
-"""Points are sorted and listed on a device as on the processor."""
+"""A device sorts and lists points as the processor does."""
 
 import numpy as np
 import pytest
@@ -16,7 +16,7 @@ REACH, SPLIT, COUNT = 0.11, 700, 1000
 
 
 @pytest.fixture
-def on_device():
+def queue_and_kernels():
     queue, program = device_of("opencl").queue(), Program()
     kernels = cells.source(program)
     return queue, build(queue, program.text + kernels)
@@ -25,15 +25,15 @@ def on_device():
 def points():
     """Fluid in a box and walls around it, some of them out of reach."""
     random = np.random.default_rng(3)
-    inside, around = random.random((SPLIT, 3)), 3.0 * random.random((COUNT - SPLIT, 3)) - 1.0
+    inside, outside = random.random((SPLIT, 3)), 3.0 * random.random((COUNT - SPLIT, 3)) - 1.0
     rows = np.zeros((COUNT, 4))
-    rows[:, :3] = np.concatenate([inside, around])
+    rows[:, :3] = np.concatenate([inside, outside])
     return rows
 
 
 @pytest.mark.parametrize("by_rows", [True, False])
-def test_devices_sort_and_list_as_the_processor_does(on_device, by_rows):
-    queue, kernels = on_device
+def test_devices_sort_and_list_as_the_processor_does(queue_and_kernels, by_rows):
+    queue, kernels = queue_and_kernels
     rows = points()
     grid = grid_around(rows[:SPLIT], REACH)
     groups = [(0, SPLIT), (SPLIT, COUNT - SPLIT)]
@@ -59,8 +59,8 @@ def test_devices_sort_and_list_as_the_processor_does(on_device, by_rows):
         assert np.array_equal(row, expected.list[expected.begin[i] : expected.end[i]])
 
 
-def test_the_greatest_of_each_column_is_exact(on_device):
+def test_the_greatest_of_each_column_is_exact(queue_and_kernels):
     rows = np.random.default_rng(5).normal(size=(COUNT, 4))
-    device = cells.Cells(*on_device, by_rows=True)
-    greatest = device.greatest(DeviceArray.of(on_device[0], rows), SPLIT)
+    device = cells.Cells(*queue_and_kernels, by_rows=True)
+    greatest = device.greatest(DeviceArray.of(queue_and_kernels[0], rows), SPLIT)
     assert np.array_equal(greatest, rows[:SPLIT].max(axis=0))

@@ -1,4 +1,4 @@
-"""What a printed law may be made of has the bits that numba gives it."""
+"""Each construct that a printed law may use has the bits of numba."""
 
 import math
 from typing import NamedTuple
@@ -12,7 +12,7 @@ from quintet.components.shared.opencl.types import REAL, bytes_of, memory_type, 
 from quintet.components.shared.smoothing import cubic_spline
 
 pytest.importorskip("pyopencl")
-from printed_laws import ROWS, Between, Law, drawn, of_device, of_numba, ulps, vector
+from printed_laws import ROWS, Between, Law, draw, run_by_numba, run_on_device, ulps, vector
 
 HALF = 0.5
 WHOLE = np.int8(3)
@@ -102,7 +102,7 @@ def loops(a):
 
 @njit(error_model="numpy")
 def last(r):
-    """Return the last of three, and how many they are."""
+    """Return the last of three numbers, and the count."""
     x, _, z = r
     return r[-1] * x + z + r[1], len(r)
 
@@ -131,7 +131,7 @@ def flags(a, on):
 
 
 def unicode_names(ρ, μ_r, half, kernel):
-    """Names of other alphabets, and names that C has reserved."""
+    """Names in other alphabets, and names reserved in C."""
     double = ρ * μ_r
     return double + half - kernel
 
@@ -166,13 +166,14 @@ LAWS = [
 def results():
     random = np.random.default_rng(7)
     rows = [
-        [tuple(drawn(each, random) for each in law.arguments) for _ in range(ROWS)] for law in LAWS
+        [tuple(draw(argument, random) for argument in law.arguments) for _ in range(ROWS)]
+        for law in LAWS
     ]
     with np.errstate(all="ignore"):
-        numba = [of_numba(law, given) for law, given in zip(LAWS, rows, strict=True)]
+        numba = [run_by_numba(law, law_rows) for law, law_rows in zip(LAWS, rows, strict=True)]
     return {
         law.name: pair
-        for law, pair in zip(LAWS, zip(numba, of_device(LAWS, rows), strict=True), strict=True)
+        for law, pair in zip(LAWS, zip(numba, run_on_device(LAWS, rows), strict=True), strict=True)
     }
 
 
@@ -196,12 +197,12 @@ def test_single_precision_is_single_throughout():
 def test_single_precision_agrees_to_its_rounding():
     random = np.random.default_rng(7)
     law = LAWS[0]
-    rows = [tuple(drawn(each, random) for each in law.arguments) for _ in range(ROWS)]
-    (single,) = of_device([law], [rows], "single")
-    (double,) = of_device([law], [rows])
+    rows = [tuple(draw(argument, random) for argument in law.arguments) for _ in range(ROWS)]
+    (single,) = run_on_device([law], [rows], "single")
+    (double,) = run_on_device([law], [rows])
     assert single.dtype == np.float32
-    size = 5.0 * 5.0 + np.abs([a / b for a, b in rows]).reshape(-1, 1)
-    assert (np.abs(single - double) < 4e-7 * 4.0 * size).all()
+    scale = 5.0 * 5.0 + np.abs([a / b for a, b in rows]).reshape(-1, 1)
+    assert (np.abs(single - double) < 4e-7 * 4.0 * scale).all()
 
 
 def test_products_are_never_contracted_with_sums():
@@ -210,11 +211,11 @@ def test_products_are_never_contracted_with_sums():
 
 def test_a_law_is_printed_once_for_a_set_of_types():
     program = Program()
-    first, _ = program.add(reads_records, Outer(Inner(True, 1.0), 3), 0.0)
-    again, _ = program.add(reads_records, Outer(Inner(False, 2.0), 5), 1.0)
-    other, _ = program.add(reads_records, Outer(Inner(None, 1.0), 3), 0.0)
-    assert first == again != other
-    assert program.text.count(f" {first}(") == 1
+    name, _ = program.add(reads_records, Outer(Inner(True, 1.0), 3), 0.0)
+    repeated_name, _ = program.add(reads_records, Outer(Inner(False, 2.0), 5), 1.0)
+    other_name, _ = program.add(reads_records, Outer(Inner(None, 1.0), 3), 0.0)
+    assert name == repeated_name != other_name
+    assert program.text.count(f" {name}(") == 1
 
 
 def test_structs_lie_in_memory_as_the_device_has_them():

@@ -1,7 +1,7 @@
-"""Laws of all solvers, printed for a device, have the bits that numba gives them.
+"""Laws of all solvers, printed for a device, have the bits of numba.
 
-The exceptions call transcendental functions, which PoCL rounds otherwise than the C library does:
-`ulp` holds by how much.
+The exceptions call transcendental functions, which PoCL rounds differently from the C library;
+`ulp` is the allowed difference.
 """
 
 import importlib
@@ -13,7 +13,17 @@ import numpy as np
 import pytest
 
 pytest.importorskip("pyopencl")
-from printed_laws import ROWS, Between, Law, drawn, of_device, of_numba, scale_of, ulps, vector
+from printed_laws import (
+    ROWS,
+    Between,
+    Law,
+    draw,
+    run_by_numba,
+    run_on_device,
+    scale_of,
+    ulps,
+    vector,
+)
 
 from quintet.components.dem_bodies import laws as dem
 from quintet.components.fe_plate import laws as plate
@@ -171,8 +181,8 @@ SMOOTHING = {
     importlib.import_module(f"{smoothing.__name__}.{path.stem}")
     for path in Path(next(iter(smoothing.__path__))).glob("[!_]*.py")
 }
-LAW_FILES = SMOOTHING | {each for each in MODULES if each.__name__.split(".")[-1] == "laws"}
-# Laws that cannot be printed, and why: they read or write arrays, or choose a law by its type.
+LAW_FILES = SMOOTHING | {module for module in MODULES if module.__name__.split(".")[-1] == "laws"}
+# Laws that cannot be printed, as they read or write arrays, or choose a law by its type.
 NOT_PURE = {
     "change_stiffness", "friction", "force_over_distance", "pair_energy", "damping_weight",
     "force", "energy",
@@ -193,37 +203,38 @@ def solver(law):
 
 @cache
 def results(folder):
-    """Largest differences of the laws of a folder, by their names; none if one is not finite."""
+    """Largest differences of the laws of a folder, by name; all results must be finite."""
     laws, random = [law for law in LAWS if solver(law) == folder], np.random.default_rng(11)
     rows = [
-        [tuple(drawn(each, random) for each in law.arguments) for _ in range(ROWS)] for law in laws
+        [tuple(draw(argument, random) for argument in law.arguments) for _ in range(ROWS)]
+        for law in laws
     ]
     differences = {}
-    for law, arguments, printed in zip(laws, rows, of_device(laws, rows), strict=True):
-        of_processor = of_numba(law, arguments)
+    for law, arguments, printed in zip(laws, rows, run_on_device(laws, rows), strict=True):
+        of_processor = run_by_numba(law, arguments)
         assert of_processor.shape == printed.shape and np.isfinite(of_processor).all(), law.name
         scale = scale_of(law, arguments, of_processor)
         differences[law.name] = ulps(of_processor, printed, scale)
     return differences
 
 
-def tried(law):
+def case_of(law):
     is_used = law.name.startswith(ON_DEVICES)
     return pytest.param(law, id=law.name, marks=[] if is_used else pytest.mark.full)
 
 
-@pytest.mark.parametrize("law", [tried(law) for law in LAWS])
+@pytest.mark.parametrize("law", [case_of(law) for law in LAWS])
 def test_printed_laws_have_the_bits_of_numba(law):
     assert results(solver(law))[law.name] <= law.ulp
 
 
 def test_every_law_is_tried_or_is_not_pure():
-    here = {getattr(law.function, "py_func", law.function) for law in LAWS}
+    tried_laws = {getattr(law.function, "py_func", law.function) for law in LAWS}
     for module in LAW_FILES:
         for name, law in vars(module).items():
             python = getattr(law, "py_func", law)
             if inspect.isfunction(python) and python.__module__ == module.__name__:
-                assert python in here or name in NOT_PURE or name.startswith("_"), name
+                assert python in tried_laws or name in NOT_PURE or name.startswith("_"), name
 
 
 @pytest.mark.parametrize("name", ["change_stiffness", "friction"])

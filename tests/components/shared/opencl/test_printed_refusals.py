@@ -1,4 +1,4 @@
-"""What cannot be printed is refused: file, line, construct, and what to do."""
+"""Constructs that cannot be printed are refused: file, line, construct and remedy."""
 
 import math
 
@@ -35,7 +35,7 @@ def loops_over_a_tuple(r):
     return s
 
 
-def loops_as_often_as_told(x):
+def loops_a_varying_number_of_times(x):
     s = 0.0
     for _ in range(int(x)):
         s += x
@@ -184,7 +184,13 @@ REFUSED = [
     (loops_forever, (0.0,), 2, "`while x > 0.0:`", "arrays, exceptions and other loops"),
     (stores_in_an_array, ((0.0,), 0.0), 2, "a value stored in `a[0]`", "store it in the kernel"),
     (loops_over_a_tuple, ((0.0,) * 3,), 3, "`for x in r`", "for name in range(number)"),
-    (loops_as_often_as_told, (0.0,), 3, "`for _ in range(int(x))`", "known as the law is printed"),
+    (
+        loops_a_varying_number_of_times,
+        (0.0,),
+        3,
+        "`for _ in range(int(x))`",
+        "known as the law is printed",
+    ),
     (reads_a_varying_item, ((0.0,) * 3,), 4, "`r[d]`, an index that varies", "r[0], r[1] and r[2]"),
     (reads_beyond_the_end, ((0.0,) * 3,), 2, "`r[3]` of 3 items", "Correct it"),
     (raises, (0.0,), 2, "`raise ValueError(x)`", "exceptions"),
@@ -218,17 +224,17 @@ REFUSED = [
 ]
 
 
-NAMES = [each[0].__name__ for each in REFUSED]
+NAMES = [case[0].__name__ for case in REFUSED]
 
 
-@pytest.mark.parametrize(("law", "arguments", "line", "found", "remedy"), REFUSED, ids=NAMES)
-def test_a_construct_outside_the_subset_is_refused(law, arguments, line, found, remedy):
-    with pytest.raises(PrintError) as caught:
+@pytest.mark.parametrize(("law", "arguments", "line", "construct", "remedy"), REFUSED, ids=NAMES)
+def test_a_construct_outside_the_subset_is_refused(law, arguments, line, construct, remedy):
+    with pytest.raises(PrintError) as refusal:
         Program().add(law, *arguments)
-    text = str(caught.value)
+    text = str(refusal.value)
     place = f"test_printed_refusals.py:{law.__code__.co_firstlineno + line - 1}, in {law.__name__}"
     assert text.startswith(place)
-    assert found in text and remedy in text and __file__ in text
+    assert construct in text and remedy in text and __file__ in text
 
 
 def test_a_lambda_is_refused():
