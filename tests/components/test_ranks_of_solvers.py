@@ -10,7 +10,7 @@ from rank_runs import MOVED, RANK_PROGRAM, differences
 pytestmark = [pytest.mark.mpi, pytest.mark.full]
 HERE = Path(__file__).parent
 STEPS = 1000
-WINDOWS, LATEST = 11, 80  # snapshots, and the last step of one
+WINDOWS, LATEST = 11, 80  # number of snapshots, upper bound of their steps
 CASES = {
     "sph_fluid/fluid_on_ranks.py": ("dam", "symmetric", "body"),
     "sph_solid/solid_on_ranks.py": ("impact", "quarter", "glued"),
@@ -27,8 +27,8 @@ SCENES = [(program, name) for program, names in CASES.items() for name in names]
 
 @pytest.mark.parametrize(("program", "name"), SCENES)
 def test_many_steps_give_the_same_bits_on_one_to_four_ranks(program, name, tmp_path, on_ranks):
-    def run(ranks, *words):
-        arguments = (HERE / program, tmp_path, STEPS, 0, name, *words)
+    def run(ranks, *options):
+        arguments = (HERE / program, tmp_path, STEPS, 0, name, *options)
         on_ranks(RANK_PROGRAM, ranks, *arguments, seconds=3000)
         return differences(tmp_path, f"{name}-1", f"{name}-{ranks}")
 
@@ -39,12 +39,12 @@ def test_many_steps_give_the_same_bits_on_one_to_four_ranks(program, name, tmp_p
 
 @pytest.mark.parametrize(("program", "name"), SCENES)
 def test_snapshots_at_random_steps_go_on_with_other_ranks(program, name, tmp_path, on_ranks):
-    """Ten of 4 ranks on 1, 2 and 3, and of 1 on 4: as 1 goes on without them."""
+    """Snapshots of 4 ranks go on with 1, 2 and 3 ranks, those of 1 rank with 4."""
     steps = np.random.default_rng(23).choice(np.arange(2, LATEST), WINDOWS, replace=False)
     windows = sorted(steps.tolist())
     for ranks, earlier in ((1, 0), (4, 0), (1, 4), (2, 4), (3, 4), (4, 1)):
-        words = (HERE / program, tmp_path, ",".join(map(str, windows)), earlier, name)
-        on_ranks(RANK_PROGRAM, ranks, *words, seconds=3000)
+        arguments = (HERE / program, tmp_path, ",".join(map(str, windows)), earlier, name)
+        on_ranks(RANK_PROGRAM, ranks, *arguments, seconds=3000)
     differing = [
         (ranks, earlier, last)
         for ranks, earlier in ((1, 4), (2, 4), (3, 4), (4, 1))

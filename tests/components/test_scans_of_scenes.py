@@ -1,4 +1,4 @@
-"""Scans of scenes of one solver: no wrong result goes without a warning."""
+"""Scans of scenes with one solver: every wrong result has a warning."""
 
 import json
 import subprocess
