@@ -32,15 +32,15 @@ class Case:
 def linear(matrix, constant=None):
     """Flow of y' = A y + b."""
     size = len(matrix)
-    whole = np.zeros((size + 1, size + 1))
-    whole[:size, :size] = matrix
+    augmented = np.zeros((size + 1, size + 1))
+    augmented[:size, :size] = matrix
     if constant is not None:
-        whole[:size, size] = constant
+        augmented[:size, size] = constant
 
     def flow(state, time):
         key = round(time * 1e15)
         if key not in known:
-            known[key] = expm(whole * time)
+            known[key] = expm(augmented * time)
         return (known[key] @ np.append(state, 1.0))[:size]
 
     known = {}
@@ -101,13 +101,15 @@ MOTION = ("motion.position", "motion.velocity")
 def head(name, scheme, window, windows, state):
     """The keys of a scene; all of the state is recorded, for the exact answer."""
     fields = ", ".join(f'"{path}"' for path in state)
-    every = max(1, windows // SAMPLES)
+    interval = max(1, windows // SAMPLES)
     end = window * windows
-    return HEAD.format(name=name, end=end, window=window, scheme=scheme, state=fields, every=every)
+    return HEAD.format(
+        name=name, end=end, window=window, scheme=scheme, state=fields, every=interval
+    )
 
 
 def expectations(watch, end):
-    """Expect something of each quantity at the end, so that its error bar is told."""
+    """Expect each quantity at the end, so that the run reports its error bar."""
     texts = []
     for path in watch:
         component, _, field = path.partition(".")
@@ -222,7 +224,7 @@ LOWER, UPPER = "lower.motion.position", "upper.motion.position"
 def springs(name, about, scheme, window, windows, lower=1.0, upper=1.0):
     """The masses of the scene two_springs, moving along x about their rest."""
     watch = (LOWER, UPPER)
-    state = tuple(f"{who}.{key}" for who in ("lower", "upper") for key in MOTION)
+    state = tuple(f"{component}.{key}" for component in ("lower", "upper") for key in MOTION)
     matrix = np.array(
         [
             [0.0, 1.0, 0.0, 0.0],
@@ -288,7 +290,7 @@ def cases():
 
 
 def calibration_cases():
-    """Cases of other parameters, by which the constants of the value's bar were chosen."""
+    """Cases of other parameters, from which the constants of the value's bar were chosen."""
     return [
         springs("springs_light", "two_springs, masses 1 : 4", "serial", 8e-4, 4000, 1.0, 4.0),
         springs("springs_both", "two_springs, masses 3 : 1", "parallel", 6e-4, 4000, 3.0, 1.0),

@@ -21,13 +21,13 @@ QUINTET = Path(sys.executable).with_name("quintet")
 
 def processor_time(scene, settings, out):
     """Processor time of a run and of its processes [s]."""
-    words = [word for setting in settings for word in ("--set", setting)]
-    command = [QUINTET, "run", scene, "--transport", "memory", *words, "--out", out]
-    before = os.times()
+    arguments = [argument for setting in settings for argument in ("--set", setting)]
+    command = [QUINTET, "run", scene, "--transport", "memory", *arguments, "--out", out]
+    start_times = os.times()
     subprocess.run(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=False)
-    after = os.times()
-    spent = (after.children_user, after.children_system)
-    return sum(spent) - before.children_user - before.children_system
+    end_times = os.times()
+    child_times = (end_times.children_user, end_times.children_system)
+    return sum(child_times) - start_times.children_user - start_times.children_system
 
 
 def checks_share(out):
@@ -45,10 +45,10 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         for number in range(ROUNDS):
             for kind, share in kinds.items():
-                on = str(kind == "with").lower()
-                asked = [*settings, f"end={share * float(end)}", f"error_bar.on={on}"]
+                switch = str(kind == "with").lower()
+                run_settings = [*settings, f"end={share * float(end)}", f"error_bar.on={switch}"]
                 out = Path(folder) / f"{kind}{number}"
-                times[kind].append(processor_time(scene, asked, out))
+                times[kind].append(processor_time(scene, run_settings, out))
                 shares[kind].append(checks_share(out))
     start, without, with_bars = (statistics.median(times[kind]) for kind in kinds)
     print(f"start {start:.2f} s, without {without:.2f} s, with error bars {with_bars:.2f} s")

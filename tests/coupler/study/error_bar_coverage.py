@@ -59,7 +59,7 @@ def true_errors(case, times, state):
     exact = [state[0]]
     for _ in times[1:]:
         exact.append(case.flow(exact[-1], dt))
-    windows = [after - case.flow(before, dt) for before, after in pairwise(state)]
+    windows = [end - case.flow(start, dt) for start, end in pairwise(state)]
     return np.array(windows), state - np.array(exact)
 
 
@@ -75,8 +75,8 @@ def energy_residuals(case, recording):
     impulses = recording.field(giver, "foot_load.force")[:, 0, 0]  # N s
     way = np.diff(recording.field(taker, "motion.position")[:, 0, 0])  # m
     dt = np.diff(recording.times(taker))  # s
-    late = 0.0 if "iterated" in case.text else np.diff(impulses)
-    return late * way / dt + np.zeros(len(way))
+    impulse_change = 0.0 if "iterated" in case.text else np.diff(impulses)
+    return impulse_change * way / dt + np.zeros(len(way))
 
 
 def rank_correlation(first, second):
@@ -100,17 +100,20 @@ def coverage(case, folder):
         bar = [bar_about(*pair) for pair in zip(curve.expected, curve.deviation, strict=True)]
         inside = np.abs(total[:, column]) <= bar
         sampled = np.array(bars["windows"]) - 1
-        others = np.setdiff1d(np.arange(1, len(local)), sampled)
-        usual = sampled[sampled > 0]
-        estimates, truths = np.array(row["errors"])[sampled > 0], np.abs(local[usual, column])
-        by_energy = np.zeros(len(usual)) if residuals is None else residuals[usual]
+        unsampled = np.setdiff1d(np.arange(1, len(local)), sampled)
+        later_samples = sampled[sampled > 0]
+        estimates, truths = (
+            np.array(row["errors"])[sampled > 0],
+            np.abs(local[later_samples, column]),
+        )
+        by_energy = np.zeros(len(later_samples)) if residuals is None else residuals[later_samples]
         yield {
             "case": case.name,
             "quantity": row["name"],
-            "windows": len(others),
-            "samples": len(usual),
+            "windows": len(unsampled),
+            "samples": len(later_samples),
             "order": row["order"],
-            "window": float(np.mean(np.abs(local[others, column]) <= window_bar(estimates))),
+            "window": float(np.mean(np.abs(local[unsampled, column]) <= window_bar(estimates))),
             "estimate": float(np.median(estimates[truths > 0.0] / truths[truths > 0.0])),
             "rank_pieces": rank_correlation(estimates, truths),
             "rank_energy": rank_correlation(by_energy, truths),
@@ -123,7 +126,7 @@ def coverage(case, folder):
 
 
 def table(rows):
-    """The rows as a table of Markdown, and what all of them come to."""
+    """The rows as a table of Markdown, and a summary of all of them."""
     yield (
         "| case | quantity | windows | sampled | window | estimate / error | rank: pieces | "
         "rank: energy | values | end: error | end: bar |"
@@ -160,14 +163,16 @@ def main():
     parser.add_argument("--calibrate", action="store_true", help="the cases of the constants")
     options = parser.parse_args()
     settings = [f"error_bar.every={options.every}"] if options.every else []
-    chosen = calibration_cases() if options.calibrate else cases()
+    selected_cases = calibration_cases() if options.calibrate else cases()
     rows = []
     with tempfile.TemporaryDirectory() as folder:
-        for case in chosen:
+        for case in selected_cases:
             if not options.names or case.name in options.names:
                 place = (options.runs or Path(folder)) / case.name
-                done = (place / "run/results.json").is_file()
-                rows += coverage(case, place / "run" if done else run(case, place, *settings))
+                is_complete = (place / "run/results.json").is_file()
+                rows += coverage(
+                    case, place / "run" if is_complete else run(case, place, *settings)
+                )
     print(*table(rows), sep="\n")
     if options.json:
         options.json.write_text(json.dumps(rows, indent=1))

@@ -1,4 +1,4 @@
-"""Toy components whose own steps are exact, so that only the coupling of two of them errs.
+"""Toy components with exact steps, so that only the coupling between two of them errs.
 
 Each step solves the component's equation exactly for constant inputs. An `Inert` component takes an
 impulse and gives its motion; a `Driven` one takes that motion and gives its reaction.
@@ -87,7 +87,7 @@ class Carrier(Stateful):
 
 
 class Rider(Stateful):
-    """A mass on a spring and a damper whose foot rides on something."""
+    """A mass on a spring and a damper whose foot rides on another body."""
 
     takes, gives = (FOOT,), (MOTION, FOOT_LOAD)
     state = ("position", "velocity", "foot", "foot_velocity", "force")
@@ -110,12 +110,12 @@ class Rider(Stateful):
         self.foot_velocity = np.array(fields.get("foot.velocity", self.foot_velocity))
 
     def step(self, dt):
-        p, before = self.params, self.velocity
+        p, old_velocity = self.params, self.velocity
         pull = (p.stiffness * self.foot + p.damping * self.foot_velocity) / p.mass
         self.position, self.velocity = oscillate(
-            self.position, before, p.stiffness / p.mass, 0.5 * p.damping / p.mass, pull, dt
+            self.position, old_velocity, p.stiffness / p.mass, 0.5 * p.damping / p.mass, pull, dt
         )
-        self.force = -p.mass * (self.velocity - before) / dt
+        self.force = -p.mass * (self.velocity - old_velocity) / dt
 
     def give(self, wanted):
         fields = {"motion.position": self.position, "motion.velocity": self.velocity}
@@ -134,13 +134,13 @@ class Swimmer(Rider):
         speed: Number = 0.0  # m/s
 
     def step(self, dt):
-        p, before = self.params, self.velocity
-        slip = before - self.foot_velocity
+        p, old_velocity = self.params, self.velocity
+        slip = old_velocity - self.foot_velocity
         rate = p.drag / p.mass * np.abs(slip)  # 1/s
         self.velocity = self.foot_velocity + slip / (1.0 + rate * dt)
-        moved = np.where(rate > 0.0, np.log1p(rate * dt) / np.where(rate > 0.0, rate, 1.0), dt)
-        self.position = self.position + self.foot_velocity * dt + slip * moved
-        self.force = -p.mass * (self.velocity - before) / dt
+        slip_time = np.where(rate > 0.0, np.log1p(rate * dt) / np.where(rate > 0.0, rate, 1.0), dt)
+        self.position = self.position + self.foot_velocity * dt + slip * slip_time
+        self.force = -p.mass * (self.velocity - old_velocity) / dt
 
 
 class Store(Stateful):
@@ -171,7 +171,7 @@ class Store(Stateful):
 
 
 class Cooler(Stateful):
-    """A body that exchanges heat with one whose temperature it takes."""
+    """A body that exchanges heat with another body, whose temperature it takes."""
 
     takes, gives = (OUTSIDE,), (SURFACE, LOSS)
     state = ("temperature", "outside", "heat")
@@ -179,7 +179,7 @@ class Cooler(Stateful):
     @parameters
     class Params:
         capacity: Positive  # J/K
-        conductance: Positive  # W/K, to what it touches
+        conductance: Positive  # W/K, to the other body
         loss: NotNegative = 0.0  # W/K, to surroundings at 0 K
         start: Number  # K
 
@@ -191,11 +191,13 @@ class Cooler(Stateful):
         self.outside = np.array(fields.get("outside.temperature", self.outside))
 
     def step(self, dt):
-        p, before = self.params, self.temperature
+        p, old_temperature = self.params, self.temperature
         rate = (p.conductance + p.loss) / p.capacity
         source = p.conductance * self.outside / p.capacity
-        self.temperature = relax(before, source, rate, dt)
-        mean = source / rate + (before - source / rate) * -np.expm1(-rate * dt) / (rate * dt)
+        self.temperature = relax(old_temperature, source, rate, dt)
+        mean = source / rate + (old_temperature - source / rate) * -np.expm1(-rate * dt) / (
+            rate * dt
+        )
         self.heat = p.conductance * (mean - self.outside)
 
     def give(self, wanted):

@@ -1,4 +1,4 @@
-"""A sweep whose processes are killed at random; ``python`` it with the numbers of values of 4 keys.
+"""A sweep whose processes are killed at random; its arguments are the numbers of values of 4 keys.
 
 ``python tests/coupler/study/sweep_kills.py 6 6 6 6`` makes 1296 runs. Killed are processes of runs,
 the processes beside them, and now and then the sweep itself, which is then started again with the
@@ -29,13 +29,13 @@ FAILED = 3  # exit status of a sweep
 OF_SWEEP = 0.1  # share of the kills that end the sweep itself
 
 
-def over(counts, take=None):
+def over_options(counts, numbers=None):
     """Values of each key, as options; or one of each, by number."""
     words = []
     for place, (key, first, count) in enumerate(zip(KEYS, FIRST, counts, strict=True)):
         values = [f"{first * (1.0 + 0.1 * k):.6g}" for k in range(count)]
-        chosen = values if take is None else [values[take[place]]]
-        words += ["--over", f"components.spring.{key}={','.join(chosen)}"]
+        selected = values if numbers is None else [values[numbers[place]]]
+        words += ["--over", f"components.spring.{key}={','.join(selected)}"]
     return words
 
 
@@ -46,7 +46,7 @@ def line(scene, out, *words):
 
 
 class Campaign:
-    """A sweep that is started again as often as it is killed."""
+    """A sweep that is started again after each kill."""
 
     def __init__(self, scene, out, words, mark):
         self.command, self.mark = line(scene, out, *words), f"{MARK}={mark}".encode()
@@ -61,7 +61,7 @@ class Campaign:
             )
 
     def goes_on(self):
-        """Whether runs are left; where some were killed too often, the sweep is started again."""
+        """Whether runs remain; starts the sweep again if some runs were killed too often."""
         if self.sweep.poll() == FAILED:
             self.kills["starts after failed runs"] += 1
             self.start()
@@ -69,14 +69,14 @@ class Campaign:
 
     def others(self):
         """Processes of the runs."""
-        found = []
+        pids = []
         for entry in Path("/proc").glob("[0-9]*/environ"):
             try:
                 if self.mark in entry.read_bytes().split(b"\0"):
-                    found.append(int(entry.parent.name))
+                    pids.append(int(entry.parent.name))
             except OSError:
                 continue
-        return sorted(set(found) - {self.sweep.pid})
+        return sorted(set(pids) - {self.sweep.pid})
 
     def end(self):
         """End the sweep; its runs end with it."""
@@ -89,9 +89,9 @@ class Campaign:
             self.sweep.wait()
             self.kills["sweep"] += 1
             self.start()
-        elif found := self.others():
+        elif pids := self.others():
             try:
-                os.kill(choice.choice(found), signal.SIGKILL)
+                os.kill(choice.choice(pids), signal.SIGKILL)
                 self.kills["run"] += 1
             except ProcessLookupError:
                 pass
@@ -116,8 +116,8 @@ def report(options):
     with tempfile.TemporaryDirectory() as place:
         folder = Path(place)
         scene, out = write(folder, within=1.0), folder / "all"
-        words = [*over(options.counts), "--jobs", str(options.jobs), "--retry", "5"]
-        began, shown = time.monotonic(), 0.0
+        words = [*over_options(options.counts), "--jobs", str(options.jobs), "--retry", "5"]
+        start, last_report = time.monotonic(), 0.0
         campaign = Campaign(scene, out, words, folder)
         signal.signal(signal.SIGTERM, lambda *_: (campaign.end(), sys.exit(1)))
         while campaign.goes_on():
@@ -127,32 +127,35 @@ def report(options):
                 time.sleep(0.02)
             if campaign.sweep.poll() is None:
                 campaign.kill_one(choice)
-            if time.monotonic() - shown > 60.0 and (out / "sweep.log").is_file():
-                shown = time.monotonic()
+            if time.monotonic() - last_report > 60.0 and (out / "sweep.log").is_file():
+                last_report = time.monotonic()
                 done, starts, repeated = counts(out)
-                said = f"{len(done)} done, {starts.total()} starts, {len(repeated)} repeated"
-                print(f"{shown - began:.0f} s: {said}, kills {dict(campaign.kills)}", flush=True)
-        seconds, status = time.monotonic() - began, campaign.sweep.returncode
+                progress = f"{len(done)} done, {starts.total()} starts, {len(repeated)} repeated"
+                print(
+                    f"{last_report - start:.0f} s: {progress}, kills {dict(campaign.kills)}",
+                    flush=True,
+                )
+        seconds, status = time.monotonic() - start, campaign.sweep.returncode
         done, starts, repeated = counts(out)
         rows = json.loads((out / "sweep.json").read_text())["rows"]
         states = Counter(row["status"] for row in rows)
         print(f"status {status} after {seconds:.0f} s; {len(rows)} rows: {dict(states)}")
         print(f"kills: {dict(campaign.kills)}")
-        again = starts.total() - total
-        print(f"starts: {starts.total()} of {total} runs: {again} more than runs")
+        extra_starts = starts.total() - total
+        print(f"starts: {starts.total()} of {total} runs: {extra_starts} more than runs")
         print(f"repeated though complete: {len(repeated)} ({len(repeated) / total:.2%})")
-        most = campaign.kills["run"] + options.jobs * campaign.kills["sweep"]
+        most_extra = campaign.kills["run"] + options.jobs * campaign.kills["sweep"]
         sample = [tuple(map(choice.randrange, options.counts)) for _ in range(options.same)]
-        right = 0
-        for number, take in enumerate(sample):
-            alone = folder / f"alone{number}"
-            subprocess.run(line(scene, alone, *over(options.counts, take)), check=True,
-                           capture_output=True)  # fmt: skip
-            (run,) = (path.parent for path in alone.glob("*/results.json"))
-            right += same(run, out / run.name)
-        print(f"same bits as without kills: {right} of {len(sample)}")
-        well = status == 0 and states == {"done": total} and right == len(sample)
-        return well and len(repeated) <= 0.01 * total and again <= most
+        equal_runs = 0
+        for number, numbers in enumerate(sample):
+            reference = folder / f"alone{number}"
+            subprocess.run(line(scene, reference, *over_options(options.counts, numbers)),
+                           check=True, capture_output=True)  # fmt: skip
+            (run,) = (path.parent for path in reference.glob("*/results.json"))
+            equal_runs += same(run, out / run.name)
+        print(f"same bits as without kills: {equal_runs} of {len(sample)}")
+        is_well = status == 0 and states == {"done": total} and equal_runs == len(sample)
+        return is_well and len(repeated) <= 0.01 * total and extra_starts <= most_extra
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""A tolerance must reject what is wrong; one that does not is told, with status 1."""
+"""A tolerance must reject a wrong result; status 1 reports a tolerance that does not."""
 
 import json
 import os
@@ -9,7 +9,7 @@ import time
 from collections import Counter
 
 import pytest
-from spring_scene import command, found_by, write
+from spring_scene import command, command_json, write
 
 from quintet.coupler.scene.read import load, load_variants
 from quintet.coupler.study.control_judgement import judge, margin, without_control
@@ -58,9 +58,9 @@ source = "it swings along x"
 """
 
 
-def scene(folder, more):
+def scene(folder, tables):
     """The scene of a spring with a tolerance that both steps meet."""
-    return write(folder, more, within=0.02)
+    return write(folder, tables, within=0.02)
 
 
 def journal(folder):
@@ -76,31 +76,33 @@ def rows(content):
 
 @pytest.mark.slow
 def test_a_control_that_is_rejected_has_a_margin_above_one(tmp_path, capsys):
-    status, found = found_by("controls", scene(tmp_path, SOFT))
-    (row,) = rows(found)
+    status, report = command_json("controls", scene(tmp_path, SOFT))
+    (row,) = rows(report)
     assert status == 0 and row["verdict"] == "rejected" and row["control"] == "softer"
     assert row["margin"] == pytest.approx(abs(row["value"] - row["reference"]) / row["within"])
-    assert row["margin"] > 1.0 and found[0]["scene"] == "spring"
+    assert row["margin"] > 1.0 and report[0]["scene"] == "spring"
     assert "softer" in capsys.readouterr().out
 
-    status, again = found_by("controls", tmp_path / "scene.toml")
-    assert status == 0 and again == found and journal(tmp_path / "all")["started"] == 1
+    status, second_report = command_json("controls", tmp_path / "scene.toml")
+    assert status == 0 and second_report == report and journal(tmp_path / "all")["started"] == 1
     assert "found complete" in capsys.readouterr().out
 
 
 @pytest.mark.slow
 def test_a_tolerance_that_its_control_passes_is_too_wide(tmp_path, capsys):
-    status, found = found_by("controls", scene(tmp_path, SOFT + FINER))
-    said = capsys.readouterr().out
-    assert status == 1 and [row["verdict"] for row in rows(found)] == ["rejected", "PASSES"]
-    assert "spring: expectation end, control finer: a tolerance that its control passes is" in said
-    assert rows(found)[1]["margin"] < 1.0
+    status, report = command_json("controls", scene(tmp_path, SOFT + FINER))
+    output = capsys.readouterr().out
+    assert status == 1 and [row["verdict"] for row in rows(report)] == ["rejected", "PASSES"]
+    assert (
+        "spring: expectation end, control finer: a tolerance that its control passes is" in output
+    )
+    assert rows(report)[1]["margin"] < 1.0
 
 
 @pytest.mark.slow
 def test_an_expectation_without_a_control_is_told(tmp_path, capsys):
-    status, found = found_by("controls", scene(tmp_path, ZERO + SOFT))
-    assert status == 1 and rows(found)[1]["verdict"] == "NO CONTROL"
+    status, report = command_json("controls", scene(tmp_path, ZERO + SOFT))
+    assert status == 1 and rows(report)[1]["verdict"] == "NO CONTROL"
     assert "spring: expectation still: no control names it" in capsys.readouterr().out
 
 
@@ -109,8 +111,8 @@ def test_an_expectation_without_a_control_is_told(tmp_path, capsys):
 def test_what_a_preset_is_rejected_for_without_the_settings_is_no_control(
     tmp_path, preset, verdict
 ):
-    status, found = found_by("controls", scene(tmp_path, COARSE.format(preset=preset)))
-    (row,) = rows(found)
+    status, report = command_json("controls", scene(tmp_path, COARSE.format(preset=preset)))
+    (row,) = rows(report)
     assert row["verdict"] == verdict and status == (verdict != "rejected")
     assert (row["base_margin"] > 1.0) == (preset == "coarse")
     assert journal(tmp_path / "all")["started"] == 2
@@ -118,10 +120,10 @@ def test_what_a_preset_is_rejected_for_without_the_settings_is_no_control(
 
 @pytest.mark.slow
 def test_a_tolerance_of_zero_rejects_by_an_infinite_margin(tmp_path, capsys):
-    more = SOFT.replace('stiffness" = 90.0', 'start" = [0.9, 0.5, 0.0]')
-    more = more.replace('["end"]', '["end", "still"]')
-    status, found = found_by("controls", scene(tmp_path, ZERO + more))
-    assert status == 0 and [row["margin"] is None for row in rows(found)] == [False, True]
+    tables = SOFT.replace('stiffness" = 90.0', 'start" = [0.9, 0.5, 0.0]')
+    tables = tables.replace('["end"]', '["end", "still"]')
+    status, report = command_json("controls", scene(tmp_path, ZERO + tables))
+    assert status == 0 and [row["margin"] is None for row in rows(report)] == [False, True]
     assert "Infinity" not in (tmp_path / "found.json").read_text()
     assert command("controls", "--show", tmp_path / "found.json") == 0
     assert "| still | softer | 0.5 m | 0 | 0 | ∞ |" in capsys.readouterr().out
@@ -131,44 +133,44 @@ def test_a_tolerance_of_zero_rejects_by_an_infinite_margin(tmp_path, capsys):
 def test_a_run_that_fails_rejects_nothing(tmp_path, capsys):
     path = scene(tmp_path, SOFT)
     code = tmp_path / "toy_spring.py"
-    broken = "def stable_dt(self):\n        if self.params.stiffness < 95.0:\n"
-    broken += "            raise ValueError('broken on purpose')"
-    code.write_text(code.read_text().replace("def stable_dt(self):", broken))
-    status, found = found_by("controls", path)
-    assert status == 3 and rows(found)[0]["verdict"] == "FAILED"
-    said = " ".join(capsys.readouterr().out.split())
-    assert "its run is not done" in said and "broken on purpose" in said
+    failing_code = "def stable_dt(self):\n        if self.params.stiffness < 95.0:\n"
+    failing_code += "            raise ValueError('broken on purpose')"
+    code.write_text(code.read_text().replace("def stable_dt(self):", failing_code))
+    status, report = command_json("controls", path)
+    assert status == 3 and rows(report)[0]["verdict"] == "FAILED"
+    output = " ".join(capsys.readouterr().out.split())
+    assert "its run is not done" in output and "broken on purpose" in output
 
 
 @pytest.mark.slow
 def test_controls_that_were_killed_run_only_what_is_not_done(tmp_path):
-    slow = "def stable_dt(self):\n        import time\n        time.sleep(0.02)"
+    slow_code = "def stable_dt(self):\n        import time\n        time.sleep(0.02)"
     path = scene(tmp_path, SOFT + FINER.replace("0.01", "0.005"))
     code = tmp_path / "toy_spring.py"
-    code.write_text(code.read_text().replace("def stable_dt(self):", slow))
-    left = tmp_path / "all"
-    line = [sys.executable, "-m", "quintet.coupler.cli", "controls", str(path), "--out", str(left)]
-    first = subprocess.Popen(line, stdout=subprocess.DEVNULL, start_new_session=True)
+    code.write_text(code.read_text().replace("def stable_dt(self):", slow_code))
+    out = tmp_path / "all"
+    line = [sys.executable, "-m", "quintet.coupler.cli", "controls", str(path), "--out", str(out)]
+    process = subprocess.Popen(line, stdout=subprocess.DEVNULL, start_new_session=True)
     limit = time.monotonic() + 60.0
-    while not (journal(left)["done"] == 1 and journal(left)["started"] == 2):
+    while not (journal(out)["done"] == 1 and journal(out)["started"] == 2):
         assert time.monotonic() < limit, "it did not come to that"
         time.sleep(0.01)
-    os.killpg(first.pid, signal.SIGKILL)
-    first.wait()
-    status, found = found_by("controls", path)
-    assert status == 1 and [row["verdict"] for row in rows(found)] == ["rejected", "PASSES"]
-    events = [line.split()[1:] for line in (left / "sweep.log").read_text().splitlines()]
-    done = [name for name, event in events if event == "done"]
-    begun = Counter(name for name, event in events if event in ("started", "resumed"))
-    assert len(set(done)) == len(done) == 2 and begun[done[0]] == 1
+    os.killpg(process.pid, signal.SIGKILL)
+    process.wait()
+    status, report = command_json("controls", path)
+    assert status == 1 and [row["verdict"] for row in rows(report)] == ["rejected", "PASSES"]
+    events = [line.split()[1:] for line in (out / "sweep.log").read_text().splitlines()]
+    done_runs = [name for name, event in events if event == "done"]
+    starts = Counter(name for name, event in events if event in ("started", "resumed"))
+    assert len(set(done_runs)) == len(done_runs) == 2 and starts[done_runs[0]] == 1
 
 
 @pytest.mark.slow
 def test_the_file_keeps_the_rows_of_other_scenes(tmp_path):
-    other = tmp_path / "found.json"
-    other.write_text(json.dumps([{"scene": "another", "rows": []}]))
-    _, found = found_by("controls", scene(tmp_path, SOFT))
-    assert [entry["scene"] for entry in found] == ["another", "spring"]
+    path = tmp_path / "found.json"
+    path.write_text(json.dumps([{"scene": "another", "rows": []}]))
+    _, report = command_json("controls", scene(tmp_path, SOFT))
+    assert [entry["scene"] for entry in report] == ["another", "spring"]
 
 
 WRONG = {
@@ -215,8 +217,8 @@ def test_a_wrong_control_is_refused_before_anything_starts(
     tmp_path, capsys, monkeypatch, name, case
 ):
     monkeypatch.chdir(tmp_path)
-    more, sentence = WRONG[case]
-    assert command(name, scene(tmp_path, more), *(["--import"] if name == "check" else [])) == 2
+    tables, sentence = WRONG[case]
+    assert command(name, scene(tmp_path, tables), *(["--import"] if name == "check" else [])) == 2
     assert sentence in capsys.readouterr().err
     assert not (tmp_path / "runs").exists()
 

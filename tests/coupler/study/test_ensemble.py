@@ -7,7 +7,7 @@ from collections import Counter
 
 import numpy as np
 import pytest
-from spring_scene import command, found_by, write
+from spring_scene import command, command_json, write
 
 import quintet
 from quintet.coupler.scene.ensemble_table import draw_settings
@@ -39,11 +39,11 @@ source = "cos(10 t)"
 """
 
 
-def write_all(folder, more=ENSEMBLE):
+def write_all(folder, tables=ENSEMBLE):
     times = np.linspace(0.0, 1.0, 21)
     rows = [f"{t},{math.cos(10.0 * t)}" for t in times]
     (folder / "cosine.csv").write_text("\n".join(["t_s,x_m", *rows]))
-    return write(folder, CURVE + more)
+    return write(folder, CURVE + tables)
 
 
 def starts(folder):
@@ -54,10 +54,10 @@ def starts(folder):
 
 def test_runs_are_drawn_from_the_seed_and_their_own_number(tmp_path):
     _, variants = load_variants(str(write_all(tmp_path)))
-    first, more = (draw_settings(variants.ensemble, 3, runs) for runs in (4, 9))
-    assert more[:4] == first and draw_settings(variants.ensemble, 4, 4) != first
-    many = draw_settings(variants.ensemble, 0, 4000)
-    stiffness, mass = (np.array([run[key] for run in many]) for key in (STIFFNESS, MASS))
+    first, longer = (draw_settings(variants.ensemble, 3, runs) for runs in (4, 9))
+    assert longer[:4] == first and draw_settings(variants.ensemble, 4, 4) != first
+    draws = draw_settings(variants.ensemble, 0, 4000)
+    stiffness, mass = (np.array([run[key] for run in draws]) for key in (STIFFNESS, MASS))
     assert stiffness.mean() == pytest.approx(100.0, abs=0.2)
     assert stiffness.std() == pytest.approx(4.0, rel=0.05)
     assert 0.98 <= mass.min() < 0.981 and 1.019 < mass.max() <= 1.02
@@ -66,43 +66,45 @@ def test_runs_are_drawn_from_the_seed_and_their_own_number(tmp_path):
 
 @pytest.mark.slow
 def test_an_ensemble_reports_the_distribution_and_runs_nothing_twice(tmp_path, capsys):
-    path, left = write_all(tmp_path), tmp_path / "all"
-    status, found = found_by("ensemble", path, "--runs", 4, "--seed", 7)
-    assert status == 0 and found["runs"] == 4 and found["failed"] == []
-    end, curve = found["expectations"]
-    values = [row["values"]["end"] for row in found["rows"]]
+    path, out = write_all(tmp_path), tmp_path / "all"
+    status, report = command_json("ensemble", path, "--runs", 4, "--seed", 7)
+    assert status == 0 and report["runs"] == 4 and report["failed"] == []
+    end, curve = report["expectations"]
+    values = [row["values"]["end"] for row in report["rows"]]
     assert end["mean"] == pytest.approx(np.mean(values)) and end["count"] == 4
     assert end["deviation"] == pytest.approx(np.std(values, ddof=1))
     assert end["quantiles"]["0.5"] == pytest.approx(np.median(values))
     assert end["interval"][0] < end["mean"] < end["interval"][1]
-    for row in found["rows"]:  # within the phase error of its step, ω³dt²t/24 = 0.017
+    for row in report["rows"]:  # within the phase error of its step, ω³dt²t/24 = 0.017
         omega = math.sqrt(row["settings"][STIFFNESS] / row["settings"][MASS])
         assert row["values"]["end"] == pytest.approx(math.cos(omega), abs=0.02)
     assert 0.0 <= curve["inside"] <= 1.0 and end["inside"] in (0.0, 1.0)
-    with open(left / "ensemble.csv", newline="") as file:
+    with open(out / "ensemble.csv", newline="") as file:
         assert [row["name"] for row in csv.DictReader(file)] == ["end", "curve"]
-    assert (left / "ensemble.png").read_bytes().startswith(b"\x89PNG")
+    assert (out / "ensemble.png").read_bytes().startswith(b"\x89PNG")
     assert "4 of 4 runs are done, 0 failed" in capsys.readouterr().out
 
-    _, more = found_by("ensemble", path, "--runs", 6, "--seed", 7)
-    assert [row["kept"] for row in more["rows"]] == 4 * [True] + 2 * [False]
-    assert set(starts(left).values()) == {1} and len(starts(left)) == 6
+    _, second_report = command_json("ensemble", path, "--runs", 6, "--seed", 7)
+    assert [row["kept"] for row in second_report["rows"]] == 4 * [True] + 2 * [False]
+    assert set(starts(out).values()) == {1} and len(starts(out)) == 6
 
 
 @pytest.mark.slow
 def test_failed_runs_are_counted_and_named(tmp_path, capsys):
     path = write_all(tmp_path)
     code, step = (tmp_path / "toy_spring.py").read_text(), "    def step(self, dt):\n"
-    fails = "        if self.params.stiffness > 100.0:\n            raise ValueError('stiff')\n"
+    failing_code = (
+        "        if self.params.stiffness > 100.0:\n            raise ValueError('stiff')\n"
+    )
     assert step in code
-    (tmp_path / "toy_spring.py").write_text(code.replace(step, step + fails))
-    status, found = found_by("ensemble", path, "--runs", 4)
-    stiff = [row["run"] for row in found["rows"] if row["settings"][STIFFNESS] > 100.0]
-    assert status == 3 and 0 < len(stiff) < 4 and found["failed"] == stiff
-    assert found["expectations"][0]["count"] == 4 - len(stiff)
-    said = capsys.readouterr().out
-    assert f"{4 - len(stiff)} of 4 runs are done, {len(stiff)} failed" in said
-    assert all(f"run {run}" in said for run in stiff)
+    (tmp_path / "toy_spring.py").write_text(code.replace(step, step + failing_code))
+    status, report = command_json("ensemble", path, "--runs", 4)
+    stiff = [row["run"] for row in report["rows"] if row["settings"][STIFFNESS] > 100.0]
+    assert status == 3 and 0 < len(stiff) < 4 and report["failed"] == stiff
+    assert report["expectations"][0]["count"] == 4 - len(stiff)
+    output = capsys.readouterr().out
+    assert f"{4 - len(stiff)} of 4 runs are done, {len(stiff)} failed" in output
+    assert all(f"run {run}" in output for run in stiff)
 
 
 WRONG = {
@@ -150,19 +152,21 @@ def test_a_scene_without_an_ensemble_says_what_to_add(tmp_path):
 @pytest.mark.slow
 def test_a_calibration_finds_the_stiffness_again(tmp_path, capsys):
     pytest.importorskip("optuna")
-    path, left = write_all(tmp_path), tmp_path / "all"
-    over = ("--over", f"{STIFFNESS}=60:140", "--to", "curve")
-    status, found = found_by("calibrate", path, *over, "--runs", 8)
-    key = found["keys"][STIFFNESS]
-    assert status == 0 and found["misfit"] < 0.05
+    path, out = write_all(tmp_path), tmp_path / "all"
+    options = ("--over", f"{STIFFNESS}=60:140", "--to", "curve")
+    status, report = command_json("calibrate", path, *options, "--runs", 8)
+    key = report["keys"][STIFFNESS]
+    assert status == 0 and report["misfit"] < 0.05
     assert key["best"] == pytest.approx(100.0, abs=5.0)
     assert 60.0 < key["low"] < key["best"] < key["high"] < 140.0
     assert not key["open_below"] and not key["open_above"]
-    assert (left / "calibrate.png").read_bytes().startswith(b"\x89PNG")
+    assert (out / "calibrate.png").read_bytes().startswith(b"\x89PNG")
     assert "its tolerance" in capsys.readouterr().out
-    _, more = found_by("calibrate", path, *over, "--runs", 10, "--jobs", 1)
-    assert [row["settings"] for row in more["rows"][:8]] == [r["settings"] for r in found["rows"]]
-    assert set(starts(left).values()) == {1} and len(starts(left)) == 10
+    _, second_report = command_json("calibrate", path, *options, "--runs", 10, "--jobs", 1)
+    assert [row["settings"] for row in second_report["rows"][:8]] == [
+        r["settings"] for r in report["rows"]
+    ]
+    assert set(starts(out).values()) == {1} and len(starts(out)) == 10
 
 
 def test_a_calibration_without_its_library_says_what_to_install(tmp_path, monkeypatch):
@@ -172,15 +176,15 @@ def test_a_calibration_without_its_library_says_what_to_install(tmp_path, monkey
 
 
 @pytest.mark.parametrize(
-    ("over", "message"),
+    ("ranges", "message"),
     [
         (f"{STIFFNESS}=140:60", "LOW must be below HIGH; found (140.0, 60.0). Exchange them."),
         (f"{STIFFNESS}=1,2", "--over needs KEY=LOW:HIGH; found"),
         (f"{MASS},{MASS}=1:2", "a key must be given once; found it 2 times. Remove one."),
     ],
 )
-def test_wrong_ranges_are_refused(tmp_path, capsys, over, message):
-    assert command("calibrate", write_all(tmp_path), "--over", over, "--to", "end") == 2
+def test_wrong_ranges_are_refused(tmp_path, capsys, ranges, message):
+    assert command("calibrate", write_all(tmp_path), "--over", ranges, "--to", "end") == 2
     assert message in capsys.readouterr().err
 
 

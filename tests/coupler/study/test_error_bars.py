@@ -1,4 +1,4 @@
-"""Error bars of the coupling: what they are made of, and that they change nothing."""
+"""Error bars of the coupling: their estimates, and that they change no result."""
 
 import json
 import math
@@ -25,9 +25,9 @@ RIDER = {"mass": 0.5, "stiffness": 40.0, "damping": 0.1, "start": 0.1}
 
 
 def status(*arguments):
-    with pytest.raises(SystemExit) as ended:
-        main([str(word) for word in arguments])
-    return ended.value.code
+    with pytest.raises(SystemExit) as exit_info:
+        main([str(argument) for argument in arguments])
+    return exit_info.value.code
 
 
 def bars(folder):
@@ -42,8 +42,8 @@ def test_one_window_of_each_stratum_is_sampled_and_never_the_first():
 
 @pytest.mark.parametrize("order", [1, 2, 3])
 def test_results_of_any_order_are_extrapolated_to_windows_of_no_length(order):
-    exact, leading, next_one = np.array([2.0, -1.0]), np.array([0.3, 0.1]), np.array([0.01, 0.02])
-    results = [exact + leading * h**order + next_one * h ** (order + 1) for h in (1.0, 0.5, 0.25)]
+    exact, leading, following = np.array([2.0, -1.0]), np.array([0.3, 0.1]), np.array([0.01, 0.02])
+    results = [exact + leading * h**order + following * h ** (order + 1) for h in (1.0, 0.5, 0.25)]
     orders = Orders()
     np.testing.assert_allclose(orders.extrapolated(("a", "b.c"), *results), exact, rtol=1e-12)
     assert orders.order(("a", "b.c")) == order
@@ -57,10 +57,10 @@ def test_an_error_of_a_linear_motion_goes_on_as_its_own_changes_do():
         states.append(step @ states[-1])
     error = random.standard_normal(4)
     weights = nearest(error, differences(states[: DIFFERENCES + 1]))
-    at_end = differences(states[-DIFFERENCES - 1 :])
-    carried = sum(w * d for w, d in zip(weights, at_end, strict=True))
-    later = np.linalg.matrix_power(step, 50 - DIFFERENCES) @ error
-    np.testing.assert_allclose(carried, later, rtol=1e-6)
+    end_differences = differences(states[-DIFFERENCES - 1 :])
+    extrapolated = sum(w * d for w, d in zip(weights, end_differences, strict=True))
+    expected = np.linalg.matrix_power(step, 50 - DIFFERENCES) @ error
+    np.testing.assert_allclose(extrapolated, expected, rtol=1e-6)
 
 
 def test_nine_of_ten_of_the_errors_lie_within_the_bar_of_a_window():
@@ -87,12 +87,12 @@ def test_the_bar_of_a_value_holds_nine_of_ten_normal_errors():
 @pytest.mark.parametrize("scheme", ["serial", "parallel", "iterated"])
 def test_error_bars_change_no_bit_of_a_run(tmp_path, scheme):
     folders = tmp_path / "with", tmp_path / "without"
-    asked = ("two_springs", "--transport", "memory", "--set", "end=0.1", "--set", "expect=[]")
-    asked += ("--set", f"scheme={scheme!r}", "--set", "output.watch=['lower.motion.position']")
-    status("run", *asked, "--error-bar", "--set", "error_bar.every=5", "--out", folders[0])
-    status("run", *asked, "--out", folders[1])
+    arguments = ("two_springs", "--transport", "memory", "--set", "end=0.1", "--set", "expect=[]")
+    arguments += ("--set", f"scheme={scheme!r}", "--set", "output.watch=['lower.motion.position']")
+    status("run", *arguments, "--error-bar", "--set", "error_bar.every=5", "--out", folders[0])
+    status("run", *arguments, "--out", folders[1])
     assert compare(*folders) is None
-    first, second = (json.loads((one / "results.json").read_text()) for one in folders)
+    first, second = (json.loads((path / "results.json").read_text()) for path in folders)
     assert len(first["error_bar"]["windows"]) > 5
     assert "error_bar" not in second
     for key in ("ledger", "repetitions", "windows"):
@@ -108,11 +108,13 @@ def test_a_run_without_error_bars_loads_nothing_of_them(tmp_path):
         f" 'expect=[]', '--out', {str(tmp_path / 'run')!r}])\nexcept SystemExit:\n    pass\n"
         "print([name for name in sys.modules if 'error_bar' in name or 'error_growth' in name])"
     )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout.splitlines()[-1] == "[]"
+    result = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True
+    )
+    assert result.stdout.splitlines()[-1] == "[]"
 
 
-# A window of a scheme of order p leaves an error of order p + 1 in what changes by rates.
+# A window of a scheme of order p leaves an error of order p + 1 in values that follow rates.
 @pytest.mark.parametrize(("scheme", "order"), [("serial", 1), ("iterated", 2)])
 def test_the_estimate_shrinks_with_the_window_to_the_order_of_the_scheme(tmp_path, scheme, order):
     case = mechanical("halved", "", scheme, 4e-3, 60, DAMPED, RIDER)
@@ -147,10 +149,10 @@ def test_estimates_are_the_true_errors_of_windows_and_most_lie_within_the_bar(tm
 
 @pytest.mark.zenoh
 def test_error_bars_have_the_same_bits_over_zenoh(tmp_path):
-    asked = ("two_springs", "--error-bar", "--set", "end=0.1", "--set", "expect=[]")
-    asked += ("--set", "output.watch=['upper.motion.position']", "--set", "error_bar.every=8")
+    arguments = ("two_springs", "--error-bar", "--set", "end=0.1", "--set", "expect=[]")
+    arguments += ("--set", "output.watch=['upper.motion.position']", "--set", "error_bar.every=8")
     for transport in ("memory", "zenoh"):
-        status("run", *asked, "--transport", transport, "--out", tmp_path / transport)
+        status("run", *arguments, "--transport", transport, "--out", tmp_path / transport)
     assert bars(tmp_path / "memory") == bars(tmp_path / "zenoh")
     assert compare(tmp_path / "memory", tmp_path / "zenoh") is None
 
@@ -160,13 +162,13 @@ def test_a_run_that_goes_on_from_a_snapshot_has_the_same_error_bars(tmp_path, mo
     with monkeypatch.context() as patch:
         patch.setattr(snapshots, "remove", lambda paths: None)
         first = run(case, tmp_path / "case", "error_bar.every=10", "output.snapshots=0.08")
-    again = tmp_path / "case" / "again"
-    shutil.copytree(first, again)
-    for path in snapshots.snapshots(again):
+    resumed = tmp_path / "case" / "again"
+    shutil.copytree(first, resumed)
+    for path in snapshots.snapshots(resumed):
         if snapshots.window_of(path) > 60:
             path.unlink()
-    assert status("run", "--resume", again) in (0, 1)
-    assert bars(again) == bars(first)
+    assert status("run", "--resume", resumed) in (0, 1)
+    assert bars(resumed) == bars(first)
 
 
 @pytest.mark.parametrize(
@@ -187,9 +189,9 @@ def test_a_run_that_goes_on_from_a_snapshot_has_the_same_error_bars(tmp_path, mo
     ],
 )
 def test_wrong_keys_are_refused(settings, text):
-    with pytest.raises(SceneError) as refused:
+    with pytest.raises(SceneError) as error_info:
         load("two_springs", settings=settings)
-    assert text in str(refused.value)
+    assert text in str(error_info.value)
 
 
 def test_error_bars_cannot_be_added_to_a_run_that_has_begun(tmp_path, capsys):

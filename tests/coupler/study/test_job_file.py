@@ -7,7 +7,7 @@ import subprocess
 import sys
 
 import pytest
-from spring_scene import command, found_by, write
+from spring_scene import command, command_json, write
 
 from quintet.coupler.study import slurm_executor
 from quintet.coupler.study.job_file import JobFiles, cores_of, main, read_end, read_request
@@ -17,7 +17,7 @@ OVER = ("--over", f"{STEP}=0.02,0.01")
 
 
 @pytest.fixture
-def written(tmp_path):
+def scene_and_rules(tmp_path):
     """A scene, and a Snakefile of its sweep."""
     path = write(tmp_path)
     rules = ("--snakefile", tmp_path / "Snakefile", "--out", tmp_path / "all")
@@ -26,8 +26,8 @@ def written(tmp_path):
 
 
 @pytest.mark.slow
-def test_rules_name_runs_that_a_sweep_then_finds_complete(written):
-    path, rules = written
+def test_rules_name_runs_that_a_sweep_then_finds_complete(scene_and_rules):
+    path, rules = scene_and_rules
     text = rules.read_text()
     runs = json.loads(re.search(r"^RUNS = (\{.*?\n\})", text, re.M | re.S)[1])
     assert list(runs.values()) == [f"{STEP}=0.02", f"{STEP}=0.01"]
@@ -35,15 +35,15 @@ def test_rules_name_runs_that_a_sweep_then_finds_complete(written):
     shell = json.loads(re.search(r"threads: 1\n    shell: (.*)", text)[1])
     for run in runs:
         line = shell.replace("{wildcards.run}", run)
-        done = subprocess.run(["sh", "-c", line], capture_output=True, text=True)
-        assert done.returncode == 0 and f"{run}: done" in done.stdout, done.stderr
-    status, found = found_by("sweep", path, *OVER)
-    assert status == 0 and [row["kept"] for row in found["rows"]] == [True, True]
-    assert {row["run"] for row in found["rows"]} == set(runs)
+        result = subprocess.run(["sh", "-c", line], capture_output=True, text=True)
+        assert result.returncode == 0 and f"{run}: done" in result.stdout, result.stderr
+    status, report = command_json("sweep", path, *OVER)
+    assert status == 0 and [row["kept"] for row in report["rows"]] == [True, True]
+    assert {row["run"] for row in report["rows"]} == set(runs)
 
 
-def test_a_request_is_read_as_it_was_written(written):
-    path, _ = written
+def test_a_request_is_read_as_it_was_written(scene_and_rules):
+    path, _ = scene_and_rules
     place = (path.parent / "all").resolve()
     for request in place.glob("jobs/*.json"):
         job, _ = read_request(JobFiles(place, request.stem))
@@ -59,15 +59,15 @@ def test_cores_are_those_of_all_that_compute_at_once():
     assert cores_of({"transport": "mpi", "components": components}) == 5
 
 
-def test_wrong_input_is_told(written, capsys, monkeypatch):
-    path, _rules = written
-    mine = path.parent / "mine"
-    mine.write_text("mine")
-    assert command("sweep", path, *OVER, "--snakefile", mine) == 2
+def test_wrong_input_is_told(scene_and_rules, capsys, monkeypatch):
+    path, _rules = scene_and_rules
+    foreign_file = path.parent / "mine"
+    foreign_file.write_text("mine")
+    assert command("sweep", path, *OVER, "--snakefile", foreign_file) == 2
     assert "it exists. Name another file." in capsys.readouterr().err
-    assert mine.read_text() == "mine"
-    nowhere = path.parent / "none" / "Snakefile"
-    assert command("sweep", path, *OVER, "--snakefile", nowhere) == 2
+    assert foreign_file.read_text() == "mine"
+    missing_path = path.parent / "none" / "Snakefile"
+    assert command("sweep", path, *OVER, "--snakefile", missing_path) == 2
     assert "it must be a file in a folder; it is not" in capsys.readouterr().err
     assert command("sweep", path, *OVER, "--sbatch=--time=1") == 2
     assert "--sbatch is for --engine slurm; found --time=1 without" in capsys.readouterr().err
@@ -96,17 +96,22 @@ def test_a_batch_system_that_does_not_answer_is_told_at_once(
     monkeypatch.setenv("PATH", f"{tmp_path}{os.pathsep}{os.environ['PATH']}")
     monkeypatch.setattr(slurm_executor, "ANSWER", 0.2)
     assert command("sweep", write(tmp_path), *OVER, "--engine", "slurm") == 2
-    told = capsys.readouterr().err
-    assert f"--engine slurm: squeue failed: {cause}" in told and "Check that the controller" in told
+    message = capsys.readouterr().err
+    assert (
+        f"--engine slurm: squeue failed: {cause}" in message
+        and "Check that the controller" in message
+    )
 
 
 @pytest.mark.full
-def test_snakemake_plans_and_does_the_runs(written):
+def test_snakemake_plans_and_does_the_runs(scene_and_rules):
     pytest.importorskip("snakemake")
-    path, rules = written
+    path, rules = scene_and_rules
     line = [sys.executable, "-m", "snakemake", "--snakefile", str(rules), "--cores", "1"]
-    done = subprocess.run(line, capture_output=True, text=True, cwd=path.parent)
-    assert done.returncode == 0, done.stderr
+    result = subprocess.run(line, capture_output=True, text=True, cwd=path.parent)
+    assert result.returncode == 0, result.stderr
     assert (path.parent / "all" / "sweep.csv").is_file()
-    again = subprocess.run([*line, "--dry-run"], capture_output=True, text=True, cwd=path.parent)
-    assert "Nothing to be done" in again.stderr + again.stdout
+    second_result = subprocess.run(
+        [*line, "--dry-run"], capture_output=True, text=True, cwd=path.parent
+    )
+    assert "Nothing to be done" in second_result.stderr + second_result.stdout

@@ -1,4 +1,4 @@
-"""Runs of other programs: what ends them, and when earlier ones are taken over."""
+"""Runs of other programs: how they end, and when a study takes over earlier runs."""
 
 import os
 import subprocess
@@ -35,9 +35,9 @@ def test_runs_of_a_program_are_spread_over_the_refinements(tmp_path, refinements
     beside = Beside(read_peers(["toy"], load(str(write_peer(tmp_path)))), tmp_path, bool, False)
     labels = []
     for number in range(refinements):
-        before = len(beside.rows.get("toy", ()))
+        row_count = len(beside.rows.get("toy", ()))
         beside.turn(number, refinements)
-        labels.append([row["label"] for row in beside.rows["toy"][before:]])
+        labels.append([row["label"] for row in beside.rows["toy"][row_count:]])
     assert labels == turns
 
 
@@ -91,7 +91,7 @@ def soon(condition):
 
 
 @pytest.mark.parametrize(
-    ("change", "kept"),
+    ("change", "is_kept"),
     [
         (("minutes = 1", "minutes = 2"), True),
         (("seconds (", "(?:time|seconds) ("), False),
@@ -100,16 +100,16 @@ def soon(condition):
         (('file = "curve.txt"', 'file = "curve.txt"\nvalue = 0'), False),
     ],
 )
-def test_with_keep_a_run_that_would_be_read_differently_runs_again(tmp_path, change, kept):
+def test_with_keep_a_run_that_would_be_read_differently_runs_again(tmp_path, change, is_kept):
     path = str(write_peer(tmp_path / "a"))
     (peer,) = read_peers(["toy"], load(path))
     row = peer.row(peer.runs[0], tmp_path, lambda: False, False)
     assert row["status"] == "done", row["cause"]
     place = peer.place(tmp_path, peer.runs[0]) / "peer.json"
-    before = place.stat().st_mtime_ns
-    (other,) = read_peers(["toy"], load(str(write_peer(tmp_path / "b", change))))
-    other.row(other.runs[0], tmp_path, lambda: False, True)
-    assert (place.stat().st_mtime_ns == before) == kept
+    saved_time = place.stat().st_mtime_ns
+    (changed_peer,) = read_peers(["toy"], load(str(write_peer(tmp_path / "b", change))))
+    changed_peer.row(changed_peer.runs[0], tmp_path, lambda: False, True)
+    assert (place.stat().st_mtime_ns == saved_time) == is_kept
 
 
 def test_with_keep_a_program_that_was_installed_anew_runs_again(tmp_path, monkeypatch):
@@ -120,8 +120,8 @@ def test_with_keep_a_program_that_was_installed_anew_runs_again(tmp_path, monkey
     path = write_peer(tmp_path / "a", ("@python@", program.name))
     (peer,) = read_peers(["toy"], load(str(path)))
     times = []
-    for changed in (1.0, 1.0, 2.0):
-        os.utime(program, (changed, changed))
+    for moment in (1.0, 1.0, 2.0):
+        os.utime(program, (moment, moment))
         row = peer.row(peer.runs[0], tmp_path, lambda: False, True)
         assert row["status"] == "done", row["cause"]
         times.append((peer.place(tmp_path, peer.runs[0]) / "peer.json").stat().st_mtime_ns)

@@ -1,4 +1,4 @@
-"""A study beside another program: what is measured, kept, drawn and refused."""
+"""A study beside another program: its measurements, kept runs, pictures and refusals."""
 
 import json
 import math
@@ -7,7 +7,7 @@ import sys
 
 import numpy as np
 import pytest
-from spring_scene import command, found_by, write
+from spring_scene import command, command_json, write
 from toy_peer import CPU, REFINEMENTS, write_peer
 
 from quintet.components.meshless_gas.exact.riemann import Side, solution
@@ -23,14 +23,14 @@ from quintet.scenarios.shock_tube.peers.openfoam import errors
 
 
 def refusal(capsys, path, *arguments):
-    """What a study is refused with."""
+    """The message with which a study is refused."""
     assert command("study", path, "--out", path.parent / "all", *arguments) == 2
     assert not (path.parent / "all").exists()
     return capsys.readouterr().err
 
 
 def test_a_program_is_measured_as_the_scene_is_and_runs_in_turns(tmp_path, capsys):
-    _, content = found_by("study", write_peer(tmp_path), "--beside", "toy")
+    _, content = command_json("study", write_peer(tmp_path), "--beside", "toy")
     (peer,) = content["peers"]
     assert (peer["name"], peer["program"], peer["version"]) == ("toy", "Toy", "7.1")
     assert peer["settings"] == "exact, but for its phase" and peer["inputs"][0].endswith("toy.txt")
@@ -48,8 +48,8 @@ def test_a_program_is_measured_as_the_scene_is_and_runs_in_turns(tmp_path, capsy
         for words in ("0.02: done", "toy, late:", "toy, later:", "0.01: done", "toy, latest:")
     ]
     assert places == sorted(places) and "Toy 7.1: exact, but for its phase" in text
-    left = {path.name for path in (tmp_path / "all" / "toy_late").iterdir()}
-    assert {"peer.json", "peer.log", "curve.txt"} <= left and "large" not in left
+    names = {path.name for path in (tmp_path / "all" / "toy_late").iterdir()}
+    assert {"peer.json", "peer.log", "curve.txt"} <= names and "large" not in names
     result = json.loads((tmp_path / "all" / "toy_late" / "peer.json").read_text())
     assert result["commands"] == [[sys.executable, "toy.py", "0.01"]]
     assert "curve.txt" in result["inputs"]["toy.py"]
@@ -57,20 +57,20 @@ def test_a_program_is_measured_as_the_scene_is_and_runs_in_turns(tmp_path, capsy
 
 def test_the_page_of_the_study_has_the_program(tmp_path):
     path = write_peer(tmp_path)
-    found_by("study", path, "--beside", "toy")
+    command_json("study", path, "--beside", "toy")
     assert command("report", tmp_path / "all") == 0
     assert "Beside Toy 7.1" in (tmp_path / "all" / "report.html").read_text()
 
 
 def test_with_keep_a_run_of_the_same_inputs_is_taken_over(tmp_path):
     path = write_peer(tmp_path)
-    found_by("study", path, "--beside", "toy")
+    command_json("study", path, "--beside", "toy")
     place = tmp_path / "all" / "toy_late" / "peer.json"
-    before = place.stat().st_mtime_ns
+    saved_time = place.stat().st_mtime_ns
     table = tmp_path / "peers" / "toy" / "peer.toml"
     table.write_text(table.read_text().replace("phase = 0.02", "phase = 0.03"))
-    _, content = found_by("study", path, "--beside", "toy", "--keep")
-    assert place.stat().st_mtime_ns == before
+    _, content = command_json("study", path, "--beside", "toy", "--keep")
+    assert place.stat().st_mtime_ns == saved_time
     phases = [row["settings"]["phase"] for row in content["peers"][0]["rows"]]
     errors = [row["errors"]["end"] for row in content["peers"][0]["rows"]]
     assert phases == [0.01, 0.03, 0.04]
@@ -78,7 +78,7 @@ def test_with_keep_a_run_of_the_same_inputs_is_taken_over(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("change", "more", "state", "cause"),
+    ("change", "code", "state", "cause"),
     [
         (("", ""), "sys.exit(3)", "failed", "exit status 3"),
         (("minutes = 1", "minutes = 0.03"), "time.sleep(60)", "stalled", "exit status -9"),
@@ -86,9 +86,9 @@ def test_with_keep_a_run_of_the_same_inputs_is_taken_over(tmp_path):
         (("'seconds (", "'minutes ("), "", "failed", "cpu.seconds: the program must print"),
     ],
 )
-def test_a_run_that_fails_is_told_and_the_others_count(tmp_path, change, more, state, cause):
-    path = write_peer(tmp_path, change, more)
-    status, content = found_by("study", path, "--beside", "toy")
+def test_a_run_that_fails_is_told_and_the_others_count(tmp_path, change, code, state, cause):
+    path = write_peer(tmp_path, change, code)
+    status, content = command_json("study", path, "--beside", "toy")
     assert status == 3 and all(row["status"] == "done" for row in content["rows"])
     row = content["peers"][0]["rows"][0]
     assert row["status"] == state and cause in row["cause"] and row["errors"] == {}
@@ -102,8 +102,8 @@ def test_a_program_that_is_not_there_is_refused_with_what_to_do(tmp_path, capsys
     assert "--beside tow is not known. Did you mean toy?" in refusal(
         capsys, path, "--beside", "tow"
     )
-    changed = refusal(capsys, path, "--beside", "toy", "--set", "end=0.5")
-    assert "--beside takes no --set" in changed and "Remove it" in changed
+    message = refusal(capsys, path, "--beside", "toy", "--set", "end=0.5")
+    assert "--beside takes no --set" in message and "Remove it" in message
     assert command("study", "--all", "--beside", "toy") == 2
     assert "study --all takes no --beside" in capsys.readouterr().err
 
@@ -221,10 +221,17 @@ def test_curves_are_read_from_columns_among_other_lines(tmp_path):
 
 def test_an_output_serves_the_expectations_of_its_field():
     table = CurveTable(component="a", field="b.c", item=2, axis=0, file="x")
-    same = {"component": "a", "field": "b.c", "item": 2, "axis": 0}
-    more = {"name": "n", "measure": "max", "value": 1.0, "within": 1.0, "unit": "m", "source": "s"}
-    assert table.serves(Expectation(**same, **more))
-    assert not table.serves(Expectation(**{**same, "item": 1}, **more))
+    target = {"component": "a", "field": "b.c", "item": 2, "axis": 0}
+    limits = {
+        "name": "n",
+        "measure": "max",
+        "value": 1.0,
+        "within": 1.0,
+        "unit": "m",
+        "source": "s",
+    }
+    assert table.serves(Expectation(**target, **limits))
+    assert not table.serves(Expectation(**{**target, "item": 1}, **limits))
 
 
 def test_the_tube_of_openfoam_has_the_exact_solution_of_the_component():

@@ -1,11 +1,11 @@
-"""A wrong result that no warning, refusal or failure reports is found, and so is a false alarm."""
+"""A scan finds wrong results without a warning, refusal or failure, and false alarms."""
 
 import json
 import shutil
 from pathlib import Path
 
 import pytest
-from spring_scene import command, found_by, write
+from spring_scene import command, command_json, write
 
 from quintet.coupler.scene.scan_table import Scan, ScanTable
 from quintet.coupler.study.scan import row_of, status_of, verdict
@@ -19,68 +19,68 @@ def scans(*tables):
     return "".join(f"[[scan]]\n{table}\n" for table in tables)
 
 
-def rows(found, number=0):
-    return found["scans"][number]["rows"]
+def rows(report, number=0):
+    return report["scans"][number]["rows"]
 
 
 def test_each_run_is_right_told_or_silent(tmp_path, capsys):
     path = write(tmp_path, scans(STEP + "values = [0.01, 0.1, -1.0]\n" + COS), within=1e-9)
-    status, found = found_by("scan", path)
+    status, report = command_json("scan", path)
     assert status == 1, "a run is silently wrong"
-    assert [row["status"] for row in rows(found)] == [0, 0, 2]
-    assert [row["verdict"] for row in rows(found)] == ["right", "SILENT", "told"]
+    assert [row["status"] for row in rows(report)] == [0, 0, 2]
+    assert [row["verdict"] for row in rows(report)] == ["right", "SILENT", "told"]
     # Leap-frog is wrong by 0.544 · 1000 dt² / 24; the error is relative to cos(10).
-    assert rows(found)[0]["errors"]["end"] == pytest.approx(0.544 * 0.1 / 24 / 0.839, rel=0.2)
-    assert "step should be greater than 0; found -1.0" in rows(found)[2]["why"]
-    (scan,) = found["scans"]
+    assert rows(report)[0]["errors"]["end"] == pytest.approx(0.544 * 0.1 / 24 / 0.839, rel=0.2)
+    assert "step should be greater than 0; found -1.0" in rows(report)[2]["why"]
+    (scan,) = report["scans"]
     assert (scan["name"], scan["judged"]) == ("components.spring.step", ["end"])
-    assert found["scene"] == "spring" and found["machine"]["cores"]
-    assert json.loads((tmp_path / "all" / "scan.json").read_text()) == found
-    said = capsys.readouterr().out
-    assert "components.spring.step = 0.1: SILENT (sound, error 34.8 %)" in said
+    assert report["scene"] == "spring" and report["machine"]["cores"]
+    assert json.loads((tmp_path / "all" / "scan.json").read_text()) == report
+    output = capsys.readouterr().out
+    assert "components.spring.step = 0.1: SILENT (sound, error 34.8 %)" in output
 
 
 def test_a_scan_without_silent_rows_ends_with_status_0(tmp_path):
     path = write(tmp_path, scans(STEP + "values = [0.01, 0.02]\n" + COS), within=1e-9)
-    status, found = found_by("scan", path)
-    assert status == 0 and [row["verdict"] for row in rows(found)] == ["right", "right"]
+    status, report = command_json("scan", path)
+    assert status == 0 and [row["verdict"] for row in rows(report)] == ["right", "right"]
 
 
 def test_a_warning_of_a_right_result_is_a_false_alarm_and_of_a_wrong_one_told(tmp_path):
-    warned = SCENE_WITH_WARNING
+    scene_text = SCENE_WITH_WARNING
     shutil.copy(TOYS / "toy_spring.py", tmp_path)
     (tmp_path / "toy_warning.py").write_text(WARNING)
-    (tmp_path / "scene.toml").write_text(warned)
-    status, found = found_by("scan", tmp_path / "scene.toml")
+    (tmp_path / "scene.toml").write_text(scene_text)
+    status, report = command_json("scan", tmp_path / "scene.toml")
     assert status == 0
-    assert [row["status"] for row in rows(found)] == [0, 1, 1]
-    assert [row["verdict"] for row in rows(found)] == ["right", "false alarm", "told"]
-    assert rows(found)[1]["why"] == "the step is too long"
+    assert [row["status"] for row in rows(report)] == [0, 1, 1]
+    assert [row["verdict"] for row in rows(report)] == ["right", "false alarm", "told"]
+    assert rows(report)[1]["why"] == "the step is too long"
 
 
 def test_exact_answers_may_depend_on_the_value(tmp_path):
-    given = 'parameter = "end"\nvalues = [1.0, 1.5, 2.0]\nname = "time"\n' + COS
-    wrong = 'parameter = "components.spring.mass"\nvalues = [1.0, 4.0]\n' + COS
-    wrong += "exact = { end = [-0.8390715, 0.2836622] }\n"
-    path = write(tmp_path, scans(given, wrong))
-    status, found = found_by("scan", path)
+    time_scan = 'parameter = "end"\nvalues = [1.0, 1.5, 2.0]\nname = "time"\n' + COS
+    mass_scan = 'parameter = "components.spring.mass"\nvalues = [1.0, 4.0]\n' + COS
+    mass_scan += "exact = { end = [-0.8390715, 0.2836622] }\n"
+    path = write(tmp_path, scans(time_scan, mass_scan))
+    status, report = command_json("scan", path)
     assert status == 0
-    assert [row["verdict"] for row in rows(found, 1)] == ["right", "right"]
-    assert rows(found, 1)[1]["values"]["end"] == pytest.approx(0.2836622, abs=1e-2)
+    assert [row["verdict"] for row in rows(report, 1)] == ["right", "right"]
+    assert rows(report, 1)[1]["values"]["end"] == pytest.approx(0.2836622, abs=1e-2)
 
 
 def test_what_could_not_be_measured_is_silent(tmp_path):
     path = write(tmp_path, scans('parameter = "end"\nvalues = [1.0, 0.5]\n'))
-    status, found = found_by("scan", path)
-    assert status == 1 and rows(found)[1]["error"] is None
-    assert rows(found)[1]["values"] == {"end": None}
-    assert [row["verdict"] for row in rows(found)] == ["right", "SILENT"]
+    status, report = command_json("scan", path)
+    assert status == 1 and rows(report)[1]["error"] is None
+    assert rows(report)[1]["values"] == {"end": None}
+    assert [row["verdict"] for row in rows(report)] == ["right", "SILENT"]
 
 
 def test_errors_are_relative_to_the_scale_that_is_given(tmp_path):
     table = STEP + "values = [0.01, 0.1]\nscale = { end = 100.0 }\n" + COS
-    status, found = found_by("scan", write(tmp_path, scans(table)))
-    assert status == 0 and rows(found)[1]["error"] == pytest.approx(0.348 * 0.839 / 100, rel=0.01)
+    status, report = command_json("scan", write(tmp_path, scans(table)))
+    assert status == 0 and rows(report)[1]["error"] == pytest.approx(0.348 * 0.839 / 100, rel=0.01)
 
 
 def test_energy_that_a_run_gains_is_an_error_where_a_scan_judges_it():
@@ -98,19 +98,19 @@ def test_settings_of_a_scan_and_one_of_its_name(tmp_path):
     second = STEP + 'name = "b"\nvalues = [0.01, 0.02]\n'
     second += 'settings = { "components.spring.mass" = 4.0 }\nscale = { end = 0.1 }\n'
     path = write(tmp_path, scans(first, second))
-    status, found = found_by("scan", path, "--name", "b")
-    assert [scan["name"] for scan in found["scans"]] == ["b"]
-    assert status == 1 and rows(found)[0]["values"]["end"] == pytest.approx(0.2836622, abs=1e-2)
+    status, report = command_json("scan", path, "--name", "b")
+    assert [scan["name"] for scan in report["scans"]] == ["b"]
+    assert status == 1 and rows(report)[0]["values"]["end"] == pytest.approx(0.2836622, abs=1e-2)
     assert command("scan", path, "--name", "c", "--out", tmp_path / "other") == 2
 
 
 def test_runs_that_are_done_are_kept(tmp_path, capsys):
     path = write(tmp_path, scans(STEP + "values = [0.01, 0.02]\n"))
-    found_by("scan", path)
+    command_json("scan", path)
     result = tmp_path / "all" / "components.spring.step" / "1-0.01" / "results.json"
-    written = result.stat().st_mtime_ns
-    status, _ = found_by("scan", path, "--keep")
-    assert status == 0 and result.stat().st_mtime_ns == written
+    saved_time = result.stat().st_mtime_ns
+    status, _ = command_json("scan", path, "--keep")
+    assert status == 0 and result.stat().st_mtime_ns == saved_time
     assert command("scan", path, "--out", tmp_path / "all") == 2
     assert "replace it with --force" in capsys.readouterr().err
 
@@ -198,9 +198,9 @@ WRONG = {
 def test_a_wrong_scan_is_refused_with_the_scene(tmp_path, capsys, case):
     text, *sentences = WRONG[case]
     assert command("check", "--import", write(tmp_path, scans(text))) == 2
-    said = capsys.readouterr().err
+    message = capsys.readouterr().err
     for sentence in sentences:
-        assert f"quintet: scene.toml: scan.{sentence}\n" in said
+        assert f"quintet: scene.toml: scan.{sentence}\n" in message
 
 
 def test_a_scene_without_scans_says_so(tmp_path, capsys):

@@ -1,4 +1,4 @@
-"""The page of a series has its tables and pictures, and needs nothing else."""
+"""The page of a series has its tables and pictures, and needs no other file."""
 
 import base64
 import html

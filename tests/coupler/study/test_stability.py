@@ -1,4 +1,4 @@
-"""A limit that is known exactly is found, with runs on both sides of it told apart."""
+"""The search finds a limit that is known exactly, and tells the runs on its two sides apart."""
 
 import csv
 import json
@@ -8,7 +8,7 @@ from types import SimpleNamespace
 
 import pytest
 from rich.console import Console
-from spring_scene import command, found_by, write
+from spring_scene import command, command_json, write
 
 from quintet.coupler.report.stability_map import draw_maps
 from quintet.coupler.report.stability_tables import markdown, print_limits
@@ -31,9 +31,9 @@ def limits(*tables):
 
 
 def test_the_limit_of_leap_frog_is_found_and_both_sides_are_told_apart(tmp_path, capsys):
-    rest = 'from = 0.15\nto = 0.25\nlog = true\npredicted = 0.2\nsource = "2/ω"\nend = 20.0\n'
-    status, found = found_by("stability", write(tmp_path, limits(STEP + rest + ENERGY)))
-    (limit,) = found["limits"]
+    keys = 'from = 0.15\nto = 0.25\nlog = true\npredicted = 0.2\nsource = "2/ω"\nend = 20.0\n'
+    status, report = command_json("stability", write(tmp_path, limits(STEP + keys + ENERGY)))
+    (limit,) = report["limits"]
     assert status == 0
     assert limit["found"] == pytest.approx(0.2, rel=0.05) and limit["predicted"] == 0.2
     assert limit["ratio"] == pytest.approx(limit["found"] / 0.2)
@@ -42,46 +42,49 @@ def test_the_limit_of_leap_frog_is_found_and_both_sides_are_told_apart(tmp_path,
     assert 4 < len(limit["runs"]) < 8
     for run in limit["runs"]:
         assert run["state"] == ("stable" if run["value"] < 0.2 else "unstable")
-    assert json.loads((tmp_path / "all" / "stability.json").read_text()) == found
-    said = capsys.readouterr().out
-    assert "energy: the total energy rose from 50 J" in said and "1.0" in said
+    assert json.loads((tmp_path / "all" / "stability.json").read_text()) == report
+    output = capsys.readouterr().out
+    assert "energy: the total energy rose from 50 J" in output and "1.0" in output
 
 
 def test_a_limit_is_found_for_each_value_of_a_second_parameter(tmp_path):
-    rest = 'from = 0.15\nto = 0.45\naccuracy = 0.5\nend = 12.0\nsource = "2/ω"\n'
-    rest += "predicted = [0.2, 0.4]\n"
-    rest += 'against = { parameter = "components.spring.mass", values = [1.0, 4.0] }\n'
-    status, found = found_by("stability", write(tmp_path, limits(STEP + rest + INSIDE)))
+    keys = 'from = 0.15\nto = 0.45\naccuracy = 0.5\nend = 12.0\nsource = "2/ω"\n'
+    keys += "predicted = [0.2, 0.4]\n"
+    keys += 'against = { parameter = "components.spring.mass", values = [1.0, 4.0] }\n'
+    status, report = command_json("stability", write(tmp_path, limits(STEP + keys + INSIDE)))
     assert status == 0
-    for limit, mass, exact in zip(found["limits"], (1.0, 4.0), (0.2, 0.4), strict=True):
+    for limit, mass, exact in zip(report["limits"], (1.0, 4.0), (0.2, 0.4), strict=True):
         assert limit["against"] == {"components.spring.mass": mass}
         assert limit["predicted"] == exact and limit["broke"] == "bounds"
         assert limit["holds"] < exact < limit["breaks"]
 
 
 def test_other_paths_change_along_with_the_second_parameter(tmp_path):
-    rest = "from = 0.15\nto = 0.25\naccuracy = 0.5\nend = 12.0\n"
-    rest += 'against = { parameter = "components.spring.mass", values = [1.0, 4.0], '
-    rest += 'along = { "components.spring.stiffness" = [100.0, 400.0] } }\n'
-    status, found = found_by("stability", write(tmp_path, limits(STEP + rest + INSIDE)))
+    keys = "from = 0.15\nto = 0.25\naccuracy = 0.5\nend = 12.0\n"
+    keys += 'against = { parameter = "components.spring.mass", values = [1.0, 4.0], '
+    keys += 'along = { "components.spring.stiffness" = [100.0, 400.0] } }\n'
+    status, report = command_json("stability", write(tmp_path, limits(STEP + keys + INSIDE)))
     assert status == 0
-    for limit in found["limits"]:  # k/m stays, and so does the limit
+    for limit in report["limits"]:  # k/m stays, and so does the limit
         assert limit["holds"] < 0.2 < limit["breaks"]
 
 
 def test_nothing_is_run_twice_and_a_map_is_drawn(tmp_path, capsys):
-    rest = "from = 0.15\nto = 0.45\naccuracy = 0.5\nend = 12.0\n"
-    rest += 'against = { parameter = "components.spring.mass", values = [1.0, 4.0] }\n'
-    path = write(tmp_path, limits(STEP + rest + INSIDE))
-    first, runs = found_by("stability", path), tmp_path / "all" / "components.spring.step"
+    keys = "from = 0.15\nto = 0.45\naccuracy = 0.5\nend = 12.0\n"
+    keys += 'against = { parameter = "components.spring.mass", values = [1.0, 4.0] }\n'
+    path = write(tmp_path, limits(STEP + keys + INSIDE))
+    first_report, runs = (
+        command_json("stability", path),
+        tmp_path / "all" / "components.spring.step",
+    )
     times = {run: run.stat().st_mtime_ns for run in runs.glob("*/*/results.json")}
     assert len(times) >= 4 and (tmp_path / "all" / "stability.png").stat().st_size > 10_000
-    assert found_by("stability", path) == first
+    assert command_json("stability", path) == first_report
     assert times == {run: run.stat().st_mtime_ns for run in times}
     path.write_text(path.read_text().replace("low = -1.5", "low = -1.4"))
-    found_by("stability", path)  # other bounds: other verdicts
-    again = {run: run.stat().st_mtime_ns for run in times}
-    assert all(again[run] > times[run] for run in times)
+    command_json("stability", path)  # other bounds: other verdicts
+    new_times = {run: run.stat().st_mtime_ns for run in times}
+    assert all(new_times[run] > times[run] for run in times)
 
 
 def test_a_search_that_was_ended_says_so():
@@ -119,66 +122,66 @@ def test_a_run_that_was_killed_from_outside_is_no_verdict(tmp_path):
     search = Search(variant, None, child, tmp_path / "runs", True)
     assert not find_limit(search) and not search.verdicts
     assert not (tmp_path / "runs" / VERDICTS).exists()
-    found = summary(search, None, False)
-    assert found["found"] is None and not found["complete"]
+    report = summary(search, None, False)
+    assert report["found"] is None and not report["complete"]
     assert (
-        draw_maps("spring", [found | {"against": {"mass": 1.0}}], {}, tmp_path / "map.png") is None
+        draw_maps("spring", [report | {"against": {"mass": 1.0}}], {}, tmp_path / "map.png") is None
     )
 
 
 def test_limits_of_all_scenes_make_a_table(tmp_path, monkeypatch, capsys):
-    ends = STEP + "from = 0.15\nto = 0.25\npredicted = 0.2\nsource = '2/ω'\nend = 12.0\n"
+    table = STEP + "from = 0.15\nto = 0.25\npredicted = 0.2\nsource = '2/ω'\nend = 12.0\n"
     scenes = {}
     for name in ("soft", "firm"):
         (tmp_path / name).mkdir()
-        scenes[name] = write(tmp_path / name, limits(ends + INSIDE + "accuracy = 0.5\n"))
+        scenes[name] = write(tmp_path / name, limits(table + INSIDE + "accuracy = 0.5\n"))
     (tmp_path / "none").mkdir()
     scenes["none"] = write(tmp_path / "none")  # has no limits
     monkeypatch.setattr(stability, "library", lambda: scenes)
     monkeypatch.setattr(stability, "load_variants", lambda name: load_variants(str(scenes[name])))
-    readme, kept = tmp_path / "README.md", tmp_path / "kept.json"
+    readme, json_path = tmp_path / "README.md", tmp_path / "kept.json"
     readme.write_text("before\n<!-- stability -->\nold\n<!-- end of stability -->\nafter\n")
     monkeypatch.setattr(
         stability.Searches, "find", partialmethod(by_name, stability.Searches.find, scenes)
     )
-    words = ("--all", "--json", kept, "--readme", readme, "--out", tmp_path / "out")
-    assert command("stability", *words) == 0
-    content = json.loads(kept.read_text())
+    arguments = ("--all", "--json", json_path, "--readme", readme, "--out", tmp_path / "out")
+    assert command("stability", *arguments) == 0
+    content = json.loads(json_path.read_text())
     assert [entry["scene"] for entry in content] == ["firm", "soft"]
     lines = readme.read_text().splitlines()
     assert lines[0] == "before" and lines[-1] == "after" and "old" not in lines
     assert lines[2:-2] == list(markdown(content))
-    assert command("stability", *words) == 0 and json.loads(kept.read_text()) == content
+    assert command("stability", *arguments) == 0 and json.loads(json_path.read_text()) == content
     assert command("stability", "--all", "--set", "end=1.0") == 2
     assert "stability --all takes no --set" in capsys.readouterr().err
     assert command("stability") == 2 and "a scene or --all" in capsys.readouterr().err
-    alone = tmp_path / "alone.json"
-    alone.write_text(json.dumps(content[0]))
-    assert command("stability", "--all", "--json", alone) == 2
+    foreign_path = tmp_path / "alone.json"
+    foreign_path.write_text(json.dumps(content[0]))
+    assert command("stability", "--all", "--json", foreign_path) == 2
     assert "what this command left there before" in capsys.readouterr().err
 
 
-def by_name(searches, find, scenes, name, *rest):
+def by_name(searches, find, scenes, name, *arguments):
     """Find limits of a scene of our own, that has no file in the library."""
-    return find(searches, str(scenes[name]), *rest)
+    return find(searches, str(scenes[name]), *arguments)
 
 
 def test_several_paths_are_scaled_together_and_a_range_may_fall(tmp_path):
     # k and 1/m: with a step of 0.02 s the limit ω = 100 rad/s is k = 10⁴ N/m, or m = 0.01 kg.
     paths = 'parameter = ["components.spring.stiffness"]\nfrom = 60.0\nto = 150.0\nlog = true\n'
     mass = 'parameter = "components.spring.mass"\nfrom = 0.016\nto = 0.007\nlog = true\n'
-    both = limits(paths + ENERGY + "accuracy = 0.5\n", mass + ENERGY + "accuracy = 0.5\n")
-    status, found = found_by("stability", write(tmp_path, both))
-    stiffness, light = found["limits"]
-    assert status == 0 and stiffness["parameter"] == ["components.spring.stiffness"]
-    assert stiffness["holds"] <= 100.0 <= stiffness["breaks"]
-    assert light["holds"] >= 0.01 >= light["breaks"]
+    tables = limits(paths + ENERGY + "accuracy = 0.5\n", mass + ENERGY + "accuracy = 0.5\n")
+    status, report = command_json("stability", write(tmp_path, tables))
+    stiffness_limit, mass_limit = report["limits"]
+    assert status == 0 and stiffness_limit["parameter"] == ["components.spring.stiffness"]
+    assert stiffness_limit["holds"] <= 100.0 <= stiffness_limit["breaks"]
+    assert mass_limit["holds"] >= 0.01 >= mass_limit["breaks"]
 
 
 def test_what_only_misses_its_expectation_is_degraded(tmp_path):
-    rest = 'from = 0.005\nto = 0.3\nlog = true\naccuracy = 0.5\nend = 5.0\nexpectation = ["end"]\n'
-    status, found = found_by("stability", write(tmp_path, limits(STEP + rest + INSIDE)))
-    (limit,) = found["limits"]
+    keys = 'from = 0.005\nto = 0.3\nlog = true\naccuracy = 0.5\nend = 5.0\nexpectation = ["end"]\n'
+    status, report = command_json("stability", write(tmp_path, limits(STEP + keys + INSIDE)))
+    (limit,) = report["limits"]
     assert status == 0 and limit["state"] == "unstable"
     assert limit["holds"] < 0.2 < limit["breaks"]
     # The error at the end is 0.544 · 1000 dt² / 24, to be within 2e-3.
@@ -189,21 +192,21 @@ def test_what_only_misses_its_expectation_is_degraded(tmp_path):
 
 
 def test_a_run_that_fails_is_unstable_whatever_is_asked_for(tmp_path):
-    rest = "from = 0.15\nto = 0.6\naccuracy = 0.5\nend = 200.0\n"
-    status, found = found_by("stability", write(tmp_path, limits(STEP + rest)))
-    (limit,) = found["limits"]
+    keys = "from = 0.15\nto = 0.6\naccuracy = 0.5\nend = 200.0\n"
+    status, report = command_json("stability", write(tmp_path, limits(STEP + keys)))
+    (limit,) = report["limits"]
     assert status == 0 and limit["broke"] == "failed" and "finite" in limit["how"]
 
 
 def test_a_range_without_a_limit_says_so(tmp_path, capsys):
-    both = limits(
+    tables = limits(
         STEP + "from = 0.01\nto = 0.02\n" + ENERGY,
         STEP + 'name = "late"\nfrom = 0.3\nto = 0.4\nend = 10.0\n' + ENERGY,
     )
-    status, found = found_by("stability", write(tmp_path, both))
-    assert status == 1 and [one["found"] for one in found["limits"]] == [None, None]
-    said = " ".join(capsys.readouterr().out.split())
-    assert "holds from 0.01 to 0.02" in said and "at 0.3 already: energy" in said
+    status, report = command_json("stability", write(tmp_path, tables))
+    assert status == 1 and [limit["found"] for limit in report["limits"]] == [None, None]
+    output = " ".join(capsys.readouterr().out.split())
+    assert "holds from 0.01 to 0.02" in output and "at 0.3 already: energy" in output
 
 
 HEAD = "time,name,momentum_residual,kinetic,potential,internal,work\n"
@@ -211,8 +214,8 @@ HEAD = "time,name,momentum_residual,kinetic,potential,internal,work\n"
 
 def verdict(folder, rows, status="done", **rules):
     (folder / "ledger.csv").write_text(HEAD + rows.replace("\n", ",0\n"))
-    given = {"parameter": "window", "from": 1.0, "to": 2.0, **rules}
-    limit, mistakes = read(LimitTable, given, "limit")
+    table = {"parameter": "window", "from": 1.0, "to": 2.0, **rules}
+    limit, mistakes = read(LimitTable, table, "limit")
     assert not mistakes
     results = {"status": status, "time": 3.0, "fault": {"cause": "it died"}}
     return judge(limit, results, folder)
@@ -225,11 +228,16 @@ def test_the_first_invariant_that_broke_is_told(tmp_path):
     assert verdict(tmp_path, rows, energy={"amount": 3.5}).state == "stable"
     assert verdict(tmp_path, rows, energy={"factor": 1.5}).how.endswith("from 3 J to 6 J")
     assert verdict(tmp_path, rows, "failed", **rules).broke == "energy"
-    later = rows.replace("1,link,1e-3", "1,link,1e-16") + "2,link,1e-3,,,\n2,a,,1,1,0\n"
-    found = verdict(tmp_path, later, "failed", momentum=1e-9)
-    assert (found.broke, found.time) == ("momentum", 2.0)
-    found = verdict(tmp_path, rows, "failed")
-    assert (found.state, found.broke, found.how, found.time) == ("unstable", "failed", "it died", 3)
+    later_rows = rows.replace("1,link,1e-3", "1,link,1e-16") + "2,link,1e-3,,,\n2,a,,1,1,0\n"
+    judgement = verdict(tmp_path, later_rows, "failed", momentum=1e-9)
+    assert (judgement.broke, judgement.time) == ("momentum", 2.0)
+    judgement = verdict(tmp_path, rows, "failed")
+    assert (judgement.state, judgement.broke, judgement.how, judgement.time) == (
+        "unstable",
+        "failed",
+        "it died",
+        3,
+    )
     assert "takes too long" in verdict(tmp_path, rows, "stalled").how
 
 
@@ -339,9 +347,9 @@ WRONG = {
 def test_a_wrong_limit_is_refused_with_the_scene(tmp_path, capsys, case):
     text, *sentences = WRONG[case]
     assert command("check", "--import", write(tmp_path, limits(text))) == 2
-    said = capsys.readouterr().err
+    message = capsys.readouterr().err
     for sentence in sentences:
-        assert f"quintet: scene.toml: stability.{sentence}\n" in said
+        assert f"quintet: scene.toml: stability.{sentence}\n" in message
 
 
 def test_a_scene_without_limits_says_so(tmp_path, capsys):
@@ -360,8 +368,8 @@ def test_work_from_outside_is_no_rise_of_the_energy(tmp_path):
 
 
 def test_what_is_set_need_not_suit_limits_that_are_not_looked_for(tmp_path, capsys):
-    far = 'parameter = "window"\nfrom = 0.005\nto = 0.05\n' + ENERGY
-    path, out = write(tmp_path, limits(far)), tmp_path / "out"
+    table = 'parameter = "window"\nfrom = 0.005\nto = 0.05\n' + ENERGY
+    path, out = write(tmp_path, limits(table)), tmp_path / "out"
     assert command("check", "--import", path) == 0, "the scene as it stands must suit its limits"
     assert command("check", "--import", path, "--set", "end=0.5") == 0, "check looks for no limit"
     assert command("run", path, "--set", "end=0.5", "--out", out) == 1, "the run looks for none"

@@ -1,4 +1,4 @@
-"""All studies: nothing is run twice, whatever ends the command; the table is what was measured."""
+"""All studies: no run is repeated, whatever ends the command; the table holds the measurements."""
 
 import json
 import os
@@ -72,13 +72,13 @@ def test_what_was_complete_when_it_was_killed_is_not_run_again(scenes, tmp_path,
         process, limit = begin(scenes, out), time.monotonic() + 90.0
         while len(events(out, "done")) < complete and time.monotonic() < limit:
             time.sleep(0.01)
-        before = events(out, "done")
+        done_before = events(out, "done")
         os.killpg(process.pid, signal.SIGKILL)
         process.communicate()
-        assert len(before) >= complete
+        assert len(done_before) >= complete
     process = begin(scenes, out)
-    said, _ = process.communicate(timeout=120)
-    assert process.returncode == 0, said
+    output, _ = process.communicate(timeout=120)
+    assert process.returncode == 0, output
     done, started = events(out, "done"), events(out, "started")
     assert len(done) == len(started) == 8 and set(done.values()) == {1}
     assert sum(started.values()) <= 8 + len(kills_after), "only the run under way is begun again"
@@ -94,8 +94,8 @@ def test_what_was_complete_when_it_was_killed_is_not_run_again(scenes, tmp_path,
 
 
 def all_studies(root, out, *options):
-    words = ("--json", root / "studies.json", "--readme", root / "README.md")
-    return command("study", "--all", "--out", out, *words, *options)
+    arguments = ("--json", root / "studies.json", "--readme", root / "README.md")
+    return command("study", "--all", "--out", out, *arguments, *options)
 
 
 @pytest.mark.slow
@@ -105,17 +105,17 @@ def test_the_time_is_kept_and_the_same_command_goes_on(scenes, tmp_path, capsys,
     monkeypatch.setattr(studies_plan, "estimated", lambda base, scene: 4.0 / step_of(scene))
     out, readme = tmp_path / "all", scenes / "README.md"
     assert all_studies(scenes, out, "--minutes", 0) == 130
-    said = capsys.readouterr().out
-    assert "8 refinements of 2 scenes, 6 of them quick, 0 complete" in said
-    assert "now 0 runs, one after the other: about 0 min of 0" in said
-    assert "2 refinements take more than a minute" in said
-    assert "6 quick runs, about 47 min more, do not fit into the time: the same command" in said
+    output = capsys.readouterr().out
+    assert "8 refinements of 2 scenes, 6 of them quick, 0 complete" in output
+    assert "now 0 runs, one after the other: about 0 min of 0" in output
+    assert "2 refinements take more than a minute" in output
+    assert "6 quick runs, about 47 min more, do not fit into the time: the same command" in output
     assert "| `quintet study soft` | 0.02 | time step | - | - | - | - | not measured" in (
         STUDIES.read(readme)
     )
     assert all_studies(scenes, out, "--minutes", 15) == 130  # 200 + 200 + 400 s
-    first = events(out, "done")
-    assert len(first) == 3
+    first_done = events(out, "done")
+    assert len(first_done) == 3
     assert all_studies(scenes, out) == 0
     assert len(events(out, "done")) == 6 and set(events(out, "started").values()) == {1}
     lines = STUDIES.read(readme).splitlines()
@@ -123,7 +123,7 @@ def test_the_time_is_kept_and_the_same_command_goes_on(scenes, tmp_path, capsys,
     assert readme.read_text().startswith("before\n<!-- study -->\n")
     assert readme.read_text().endswith("<!-- studied -->\nafter\n")
 
-    # In a new folder, as after a change of the source code, what was measured is not lost.
+    # In a new folder, as after a change of the source code, the measurements are kept.
     table = STUDIES.read(readme)
     assert all_studies(scenes, tmp_path / "other", "--minutes", 0) == 130
     assert STUDIES.read(readme) == table
@@ -149,10 +149,10 @@ def test_options_of_one_scene_are_refused(scenes, tmp_path, capsys, case):
 
 
 def test_a_file_without_a_place_for_the_table_is_left_as_it_is(scenes, tmp_path, capsys):
-    other = tmp_path / "other.md"
-    other.write_text("<!-- study -->\nno end\n")
-    assert command("study", "--all", "--readme", other, "--out", tmp_path / "all") == 2
+    path = tmp_path / "other.md"
+    path.write_text("<!-- study -->\nno end\n")
+    assert command("study", "--all", "--readme", path, "--out", tmp_path / "all") == 2
     assert "it must have the lines <!-- study --> and <!-- studied -->" in capsys.readouterr().err
-    assert other.read_text() == "<!-- study -->\nno end\n" and not (tmp_path / "all").exists()
+    assert path.read_text() == "<!-- study -->\nno end\n" and not (tmp_path / "all").exists()
     assert command("study", "--all", "--readme", tmp_path / "none.md") == 2
     assert "none.md: it cannot be read" in capsys.readouterr().err

@@ -7,7 +7,7 @@ import sys
 import time
 
 import pytest
-from spring_scene import command, found_by, write
+from spring_scene import command, command_json, write
 from started import write_scene
 
 REFINEMENT = """
@@ -29,10 +29,10 @@ def refinements(*steps):
 
 
 def test_a_study_observes_the_order_of_an_integrator(tmp_path, capsys):
-    status, found = found_by("study", write(tmp_path, refinements(*STEPS), within=1e-3))
+    status, report = command_json("study", write(tmp_path, refinements(*STEPS), within=1e-3))
     assert status == 0
     # Leap-frog turns by 2 asin(ω dt / 2) a step: its phase is wrong by ω³ dt² / 24 per second.
-    for row, step in zip(found["rows"], STEPS, strict=True):
+    for row, step in zip(report["rows"], STEPS, strict=True):
         assert row["status"] == "done" and row["size"] == step
         assert row["errors"]["end"] == pytest.approx(0.544 * 1000 * step**2 / 24, rel=0.1)
         assert row["settings"] == {"components.spring.step": step}
@@ -40,38 +40,38 @@ def test_a_study_observes_the_order_of_an_integrator(tmp_path, capsys):
         assert spring["steps"] == round(1.0 / step) and row["items"] == 1
         assert 0.0 < spring["cpu"] == row["cpu"] < row["wall"]
         assert row["memory"] > 1e7 and 0.0 < row["overhead"] < 1.0
-    steps = found["kinds"]["time step"]
+    steps = report["kinds"]["time step"]
     order, limit = steps["orders"]["end"], steps["limits"]["end"]
     assert order["low"] < order["order"] == pytest.approx(2.0, abs=0.05) and order["high"] < 2.2
     assert limit["order"] == pytest.approx(2.0, abs=0.05)
     assert limit["value"] == pytest.approx(-0.8390715, abs=limit["uncertainty"])
-    split = found["shares"]["of"]["end"]
-    assert found["shares"]["label"] == "0.00390625" and split["time step"] > 0.97
-    assert [row["met"] for row in found["rows"]] == [False, False, True]
-    assert found["recommended"]["label"] == "0.00390625"
-    said = capsys.readouterr().out
-    assert "recommended: 0.00390625, the cheapest that meets all expectations" in said
-    assert "not met" in said and "spring: CPU [s]" in said and "energy" not in said
+    split = report["shares"]["of"]["end"]
+    assert report["shares"]["label"] == "0.00390625" and split["time step"] > 0.97
+    assert [row["met"] for row in report["rows"]] == [False, False, True]
+    assert report["recommended"]["label"] == "0.00390625"
+    output = capsys.readouterr().out
+    assert "recommended: 0.00390625, the cheapest that meets all expectations" in output
+    assert "not met" in output and "spring: CPU [s]" in output and "energy" not in output
 
 
 def test_a_study_leaves_its_runs_a_table_and_a_picture(tmp_path):
-    assert found_by("study", write(tmp_path, refinements(0.02, 0.01)))[0] == 1
-    left = tmp_path / "all"
-    assert (left / "study.png").read_bytes().startswith(b"\x89PNG")
-    assert (left / "study.json").read_text() == (tmp_path / "found.json").read_text()
+    assert command_json("study", write(tmp_path, refinements(0.02, 0.01)))[0] == 1
+    out = tmp_path / "all"
+    assert (out / "study.png").read_bytes().startswith(b"\x89PNG")
+    assert (out / "study.json").read_text() == (tmp_path / "found.json").read_text()
     for name in ("0.02", "0.01"):
-        results = json.loads((left / name / "results.json").read_text())
+        results = json.loads((out / name / "results.json").read_text())
         assert results["status"] == "done"
-        assert f"step = {name}" in (left / name / "scene.toml").read_text()
-        assert "study" not in (left / name / "scene.toml").read_text()
+        assert f"step = {name}" in (out / name / "scene.toml").read_text()
+        assert "study" not in (out / name / "scene.toml").read_text()
 
 
 def test_the_cheapest_of_several_good_refinements_is_recommended(tmp_path):
-    several = refinements(1e-3, 0.005) + PLAIN
-    status, found = found_by("study", write(tmp_path, several, within=0.1), "--set", "end=1.0")
-    assert status == 0 and all(row["met"] for row in found["rows"])
-    assert found["rows"][0]["cpu"] > found["recommended"]["cpu"]
-    assert found["recommended"]["cpu"] == min(row["cpu"] for row in found["rows"])
+    tables = refinements(1e-3, 0.005) + PLAIN
+    status, report = command_json("study", write(tmp_path, tables, within=0.1), "--set", "end=1.0")
+    assert status == 0 and all(row["met"] for row in report["rows"])
+    assert report["rows"][0]["cpu"] > report["recommended"]["cpu"]
+    assert report["recommended"]["cpu"] == min(row["cpu"] for row in report["rows"])
 
 
 def test_a_refinement_that_fails_is_told_and_the_others_count(tmp_path, capsys):
@@ -81,9 +81,9 @@ def test_a_refinement_that_fails_is_told_and_the_others_count(tmp_path, capsys):
         + '[[study]]\nlabel = "dies"\nsettings = { "components.pong.fails_at" = 3 }\n'
         + '[[study]]\nlabel = "lives"\nsettings = { "components.pong.items" = 5 }\n'
     )
-    status, found = found_by("study", path)
-    assert status == 3 and found["recommended"] is None
-    assert [row["status"] for row in found["rows"]] == ["failed", "done"]
+    status, report = command_json("study", path)
+    assert status == 3 and report["recommended"] is None
+    assert [row["status"] for row in report["rows"]] == ["failed", "done"]
     assert "asked to raise" in (tmp_path / "all" / "dies" / "run.log").read_text()
 
 
@@ -91,20 +91,20 @@ def test_a_wanted_error_is_delivered_by_the_cheapest_or_by_an_extrapolated_setti
     tmp_path, capsys
 ):
     path = write(tmp_path, refinements(*STEPS))
-    status, found = found_by("study", path, "--error", 0.005)
-    rows, best = found["rows"], found["wanted"]["measured"]
+    status, report = command_json("study", path, "--error", 0.005)
+    rows, best = report["rows"], report["wanted"]["measured"]
     assert status == 0 and best["relative"] <= 0.005
     cheaper = [row for row in rows if row["cpu"] < best["cpu"]]
     assert all(row["relative"]["end"] > 0.005 for row in cheaper)
-    assert found["shares"]["label"] == best["label"]
+    assert report["shares"]["label"] == best["label"]
     assert f"recommended for 0.5 %: {best['label']}, the cheapest" in capsys.readouterr().out
 
-    status, found = found_by("study", path, "--error", 1e-5, "--keep")
-    assert status == 1 and "ran" not in found["wanted"]
+    status, report = command_json("study", path, "--error", 1e-5, "--keep")
+    assert status == 1 and "ran" not in report["wanted"]
     assert "EXTRAPOLATED from 0.00390625 (time step), not measured" in capsys.readouterr().out
-    status, found = found_by("study", path, "--error", 1e-5, "--keep", "--run")
-    assert status == 0 and found["wanted"]["ran"]["relative"]["end"] <= 1e-5
-    step = found["wanted"]["extrapolated"]["settings"]["components.spring.step"]
+    status, report = command_json("study", path, "--error", 1e-5, "--keep", "--run")
+    assert status == 0 and report["wanted"]["ran"]["relative"]["end"] <= 1e-5
+    step = report["wanted"]["extrapolated"]["settings"]["components.spring.step"]
     assert f"step = {step}" in (tmp_path / "all" / "extrapolated" / "scene.toml").read_text()
     assert "it delivers 0.001 %" in capsys.readouterr().out
 
@@ -115,21 +115,21 @@ def test_without_expectations_refinements_are_compared_with_the_finest(tmp_path,
     begin, end = text.index("[[expect]]"), text.index("[[study]]")
     output = '[output]\nfields = ["spring.motion.position"]\n'
     path.write_text(text[:begin] + output + text[end:])
-    status, found = found_by("study", path)
-    said = capsys.readouterr().out
-    assert status == 0 and "met" not in said
-    assert [row["met"] for row in found["rows"]] == 3 * [None]
-    assert [row["compared_with"] for row in found["rows"]] == 3 * ["0.00390625"]
-    coarse, fine, finest = (row["errors"] for row in found["rows"])
+    status, report = command_json("study", path)
+    screen = capsys.readouterr().out
+    assert status == 0 and "met" not in screen
+    assert [row["met"] for row in report["rows"]] == 3 * [None]
+    assert [row["compared_with"] for row in report["rows"]] == 3 * ["0.00390625"]
+    coarse, fine, finest = (row["errors"] for row in report["rows"])
     assert finest == {} and coarse.keys() == fine.keys() == {"spring.motion.position"}
     # Second order against the finest of three: (16 - 1) / (4 - 1).
     assert coarse["spring.motion.position"] / fine["spring.motion.position"] == pytest.approx(
         5.0, rel=0.1
     )
-    order = found["kinds"]["time step"]["orders"]["spring.motion.position"]
+    order = report["kinds"]["time step"]["orders"]["spring.motion.position"]
     assert order["order"] == pytest.approx(2.0, abs=0.15)
-    status, found = found_by("study", path, "--keep", "--error", 0.05)
-    assert status == 0 and found["wanted"]["measured"]["relative"] <= 0.05
+    status, report = command_json("study", path, "--keep", "--error", 0.05)
+    assert status == 0 and report["wanted"]["measured"]["relative"] <= 0.05
 
 
 OPTIONS = {
@@ -198,9 +198,9 @@ def test_all_mistakes_of_scene_and_refinements_are_told_at_once(tmp_path, capsys
     path = write(tmp_path, '[[study]]\nlabel = "a"\nsettings = { "wndow" = 1.0 }\nsice = "x"\n')
     path.write_text(path.read_text().replace("end = 1.0", "end = -1.0"))
     assert command("study", path, "--out", tmp_path / "all") == 2
-    said = capsys.readouterr().err
-    assert "scene.end should be greater than 0" in said
-    assert "study.a.sice is not known. Did you mean size?" in said
+    message = capsys.readouterr().err
+    assert "scene.end should be greater than 0" in message
+    assert "study.a.sice is not known. Did you mean size?" in message
     assert not (tmp_path / "all").exists()
 
 
@@ -222,32 +222,32 @@ def test_an_interrupted_study_keeps_and_tells_the_refinements_that_ran(tmp_path,
     while not running.is_file() and time.monotonic() < limit:
         time.sleep(0.02)
     process.send_signal(number)
-    said, _ = process.communicate(timeout=30.0)
+    output, _ = process.communicate(timeout=30.0)
     assert process.returncode == 130
-    found = json.loads((tmp_path / "found.json").read_text())
-    assert [row["status"] for row in found["rows"]] == ["done", "interrupted"]
-    assert found["recommended"]["label"] == "0.005" and "recommended: 0.005" in said
+    report = json.loads((tmp_path / "found.json").read_text())
+    assert [row["status"] for row in report["rows"]] == ["done", "interrupted"]
+    assert report["recommended"]["label"] == "0.005" and "recommended: 0.005" in output
     assert json.loads((running.parent / "results.json").read_text())["status"] == "interrupted"
 
 
 def test_a_study_keeps_what_was_done_of_the_same_scene_alone(tmp_path, capsys):
     path = write(tmp_path, refinements(*STEPS[:2]))
-    _, before = found_by("study", path)
+    _, first_report = command_json("study", path)
     write(tmp_path, refinements(*STEPS))
     capsys.readouterr()
-    status, found = found_by("study", path, "--keep")
-    said = capsys.readouterr().out
-    assert status == 0 and found["rows"][:2] == before["rows"]
-    assert [f"{step}: kept" in said for step in STEPS] == [True, True, False]
-    failed = tmp_path / "all" / str(STEPS[1]) / "results.json"
-    changed = json.loads(failed.read_text()) | {"status": "failed"}
-    del changed["checksums"]  # as of a run without them: else it would be refused as changed
-    failed.write_text(json.dumps(changed))
-    found_by("study", path, "--keep")
-    said = capsys.readouterr().out
-    assert [f"{step}: kept" in said for step in STEPS] == [True, False, True]
+    status, report = command_json("study", path, "--keep")
+    output = capsys.readouterr().out
+    assert status == 0 and report["rows"][:2] == first_report["rows"]
+    assert [f"{step}: kept" in output for step in STEPS] == [True, True, False]
+    results_path = tmp_path / "all" / str(STEPS[1]) / "results.json"
+    results = json.loads(results_path.read_text()) | {"status": "failed"}
+    del results["checksums"]  # as of a run without them: else it would be refused as changed
+    results_path.write_text(json.dumps(results))
+    command_json("study", path, "--keep")
+    output = capsys.readouterr().out
+    assert [f"{step}: kept" in output for step in STEPS] == [True, False, True]
     write(tmp_path, refinements(*STEPS), within=1e-3)
-    found_by("study", path, "--keep")
+    command_json("study", path, "--keep")
     assert "kept" not in capsys.readouterr().out
 
 

@@ -1,4 +1,4 @@
-"""A sweep runs each combination once, whatever ends it meanwhile."""
+"""A sweep runs each combination once, also after interruptions."""
 
 import csv
 import json
@@ -11,7 +11,7 @@ from collections import Counter
 from concurrent.futures import ProcessPoolExecutor
 
 import pytest
-from spring_scene import command, found_by, write
+from spring_scene import command, command_json, write
 from started import write_scene
 
 import quintet
@@ -43,9 +43,9 @@ def begin(path, *arguments):
     return subprocess.Popen(line, text=True, start_new_session=True, **pipes)
 
 
-def wait_for(true, seconds=60.0):
+def wait_for(condition, seconds=60.0):
     limit = time.monotonic() + seconds
-    while not true():
+    while not condition():
         assert time.monotonic() < limit, "it did not come to that"
         time.sleep(0.01)
 
@@ -53,30 +53,30 @@ def wait_for(true, seconds=60.0):
 @pytest.mark.slow
 def test_a_sweep_runs_the_product_of_the_values_once(tmp_path, capsys):
     path = write(tmp_path)
-    status, found = found_by("sweep", path, *OVER)
-    left = tmp_path / "all"
-    assert status == 0 and found["over"] == {STEP: [0.02, 0.01], STIFFNESS: [100, 50.0]}
-    settings = [tuple(row["settings"].values()) for row in found["rows"]]
+    status, report = command_json("sweep", path, *OVER)
+    out = tmp_path / "all"
+    assert status == 0 and report["over"] == {STEP: [0.02, 0.01], STIFFNESS: [100, 50.0]}
+    settings = [tuple(row["settings"].values()) for row in report["rows"]]
     assert settings == [(0.02, 100), (0.02, 50.0), (0.01, 100), (0.01, 50.0)]
-    assert len({row["run"] for row in found["rows"]}) == 4
-    for row in found["rows"]:
-        run = quintet.load(left / row["run"])
+    assert len({row["run"] for row in report["rows"]}) == 4
+    for row in report["rows"]:
+        run = quintet.load(out / row["run"])
         assert run.scene["components"]["spring"]["step"] == row["settings"][STEP]
         assert row["values"]["end"] == run.expectations["end"]["value"]
         assert row["cpu"] > 0.0 and row["wall"] > 0.0
-    with open(left / "sweep.csv", newline="") as file:
+    with open(out / "sweep.csv", newline="") as file:
         rows = list(csv.DictReader(file))
-    assert [float(row["end [m]"]) for row in rows] == [r["values"]["end"] for r in found["rows"]]
+    assert [float(row["end [m]"]) for row in rows] == [r["values"]["end"] for r in report["rows"]]
     assert [row["status"] for row in rows] == 4 * ["done"] and rows[0][STIFFNESS] == "100"
-    assert (left / "sweep.png").read_bytes().startswith(b"\x89PNG")
+    assert (out / "sweep.png").read_bytes().startswith(b"\x89PNG")
     assert "4 of 4 runs" in capsys.readouterr().out
 
-    more = (*OVER[:-1], f"{STIFFNESS}=50,100,25")  # of three values two are there
-    status, found = found_by("sweep", path, *more)
-    assert [row["kept"] for row in found["rows"]] == [True, True, False, True, True, False]
-    assert sorted(starts(left).values()) == 6 * [1]
+    arguments = (*OVER[:-1], f"{STIFFNESS}=50,100,25")  # of three values two are there
+    status, report = command_json("sweep", path, *arguments)
+    assert [row["kept"] for row in report["rows"]] == [True, True, False, True, True, False]
+    assert sorted(starts(out).values()) == 6 * [1]
     assert "4 found complete" in capsys.readouterr().out
-    assert {row["run"] for row in found["rows"]} == set(starts(left))
+    assert {row["run"] for row in report["rows"]} == set(starts(out))
 
 
 def test_values_are_those_of_toml_or_words():
@@ -117,9 +117,9 @@ WRONG = {
 
 @pytest.mark.parametrize("case", WRONG)
 def test_wrong_keys_and_values_are_refused_before_anything_starts(tmp_path, capsys, case):
-    over, sentence = WRONG[case]
-    words = [word for text in over for word in ("--over", text)]
-    assert command("sweep", write(tmp_path), *words, "--out", tmp_path / "all") == 2
+    texts, sentence = WRONG[case]
+    arguments = [argument for text in texts for argument in ("--over", text)]
+    assert command("sweep", write(tmp_path), *arguments, "--out", tmp_path / "all") == 2
     assert sentence in capsys.readouterr().err
     assert not (tmp_path / "all").exists()
 
@@ -137,75 +137,75 @@ def test_folders_of_others_are_left_alone(tmp_path, capsys):
 @pytest.mark.slow
 def test_of_a_sweep_that_is_killed_only_the_runs_under_way_are_repeated(tmp_path):
     path = write(tmp_path)
-    over = ("--over", f"{STEP}=0.02,0.01,0.005,0.004,0.0025,0.002", "--jobs", "2")
-    first = begin(path, *over)
+    arguments = ("--over", f"{STEP}=0.02,0.01,0.005,0.004,0.0025,0.002", "--jobs", "2")
+    first = begin(path, *arguments)
     done = lambda: sum(event == "done" for _, event in journal(tmp_path / "all"))  # noqa: E731
     wait_for(lambda: done() >= 2)
     os.killpg(first.pid, signal.SIGKILL)
     first.communicate()
     assert done() < 6
-    second = begin(path, *over)
-    said, wrong = second.communicate(timeout=100)
-    assert second.returncode == 0, wrong
-    again = starts(tmp_path / "all")
-    assert len(again) == 6 and again.total() <= 6 + 2, journal(tmp_path / "all")
-    assert "6 of 6 runs" in said and not list((tmp_path / "all").glob("*.lock.lock"))
+    second = begin(path, *arguments)
+    output, errors = second.communicate(timeout=100)
+    assert second.returncode == 0, errors
+    run_starts = starts(tmp_path / "all")
+    assert len(run_starts) == 6 and run_starts.total() <= 6 + 2, journal(tmp_path / "all")
+    assert "6 of 6 runs" in output and not list((tmp_path / "all").glob("*.lock.lock"))
 
 
 @pytest.mark.slow
 def test_two_sweeps_at_once_share_the_runs(tmp_path):
     path = write(tmp_path)
-    both = [begin(path, *OVER, "--jobs", "1") for _ in range(2)]
-    for one in both:
-        said, wrong = one.communicate(timeout=100)
-        assert one.returncode == 0, wrong
-        assert "4 of 4 runs" in said
+    processes = [begin(path, *OVER, "--jobs", "1") for _ in range(2)]
+    for process in processes:
+        output, errors = process.communicate(timeout=100)
+        assert process.returncode == 0, errors
+        assert "4 of 4 runs" in output
     assert sorted(starts(tmp_path / "all").values()) == 4 * [1]
 
 
 @pytest.mark.slow
 def test_an_interrupted_run_goes_on_from_its_snapshot(tmp_path):
     path = write_scene(tmp_path, end=0.3, pong="pause = 5e-3")
-    over = ("--over", "components.ping.items=5")
-    first = begin(path, *over)
-    left = tmp_path / "all"
-    wait_for(lambda: list(left.glob("*/recording.h5")))
+    arguments = ("--over", "components.ping.items=5")
+    first = begin(path, *arguments)
+    out = tmp_path / "all"
+    wait_for(lambda: list(out.glob("*/recording.h5")))
     time.sleep(0.3)
     first.send_signal(signal.SIGINT)
-    said, _ = first.communicate(timeout=30)
-    assert first.returncode == 130 and "interrupted" in said
-    second = begin(path, *over)
-    said, wrong = second.communicate(timeout=60)
-    assert second.returncode == 0, wrong
-    events = [event for _, event in journal(left)]
+    output, _ = first.communicate(timeout=30)
+    assert first.returncode == 130 and "interrupted" in output
+    second = begin(path, *arguments)
+    output, errors = second.communicate(timeout=60)
+    assert second.returncode == 0, errors
+    events = [event for _, event in journal(out)]
     assert events == ["started", "interrupted", "resumed", "done"]
-    (run,) = left.glob("*/results.json")
+    (run,) = out.glob("*/results.json")
     assert json.loads(run.read_text())["windows"] == 300
 
 
 @pytest.mark.slow
 def test_runs_that_fail_are_told_and_tried_again_by_the_next_start(tmp_path, capsys):
     path = write_scene(tmp_path, end=0.01, pong="fails_at = 3")
-    over = ("--over", "components.pong.fails_by=raise,kill", "--retry", "1")
+    arguments = ("--over", "components.pong.fails_by=raise,kill", "--retry", "1")
     for number in (1, 2):
-        status, found = found_by("sweep", path, *over)
-        assert status == 3 and [row["status"] for row in found["rows"]] == 2 * ["failed"]
-        assert "asked to raise" in found["rows"][0]["cause"]
-        said = capsys.readouterr().out
-        assert "2 runs failed: the same command tries them again" in said
-        raised, killed = (starts(tmp_path / "all")[row["run"]] for row in found["rows"])
-        assert raised == number, "an error would come again"
-        assert killed == 2 * number, "a process that was killed from outside is tried again"
+        status, report = command_json("sweep", path, *arguments)
+        assert status == 3 and [row["status"] for row in report["rows"]] == 2 * ["failed"]
+        assert "asked to raise" in report["rows"][0]["cause"]
+        output = capsys.readouterr().out
+        assert "2 runs failed: the same command tries them again" in output
+        error_starts, kill_starts = (starts(tmp_path / "all")[row["run"]] for row in report["rows"])
+        assert error_starts == number, "an error would come again"
+        assert kill_starts == 2 * number, "a process that was killed from outside is tried again"
 
 
 @pytest.mark.slow
 def test_a_sweep_from_python_takes_any_executor(tmp_path):
     path = write(tmp_path)
     with ProcessPoolExecutor(2) as executor:
-        swept = quintet.sweep(path, {STEP: [0.02, 0.01]}, out=tmp_path / "all", executor=executor)
-    assert swept.ok and [row["status"] for row in swept.rows] == 2 * ["done"]
-    again = quintet.sweep(path, {STEP: [0.02, 0.01]}, out=tmp_path / "all")
-    assert [row["kept"] for row in again.rows] == [True, True]
+        sweep = quintet.sweep(path, {STEP: [0.02, 0.01]}, out=tmp_path / "all", executor=executor)
+    assert sweep.ok and [row["status"] for row in sweep.rows] == 2 * ["done"]
+    second_sweep = quintet.sweep(path, {STEP: [0.02, 0.01]}, out=tmp_path / "all")
+    assert [row["kept"] for row in second_sweep.rows] == [True, True]
     with pytest.raises(quintet.SceneError, match="there must be a list of values"):
         quintet.sweep(path, {STEP: 0.02})
 
@@ -213,32 +213,32 @@ def test_a_sweep_from_python_takes_any_executor(tmp_path):
 @pytest.mark.slow
 def test_results_that_were_changed_are_made_again(tmp_path):
     path = write(tmp_path)
-    _, found = found_by("sweep", path, "--over", f"{STEP}=0.02")
-    folder = tmp_path / "all" / found["rows"][0]["run"]
+    _, report = command_json("sweep", path, "--over", f"{STEP}=0.02")
+    folder = tmp_path / "all" / report["rows"][0]["run"]
     results = folder / "results.json"
     results.write_text(results.read_text().replace('"met": false', '"met": true'))
-    _, found = found_by("sweep", path, "--over", f"{STEP}=0.02")
-    assert not found["rows"][0]["kept"] and starts(folder.parent)[folder.name] == 2
+    _, report = command_json("sweep", path, "--over", f"{STEP}=0.02")
+    assert not report["rows"][0]["kept"] and starts(folder.parent)[folder.name] == 2
     assert '"met": false' in results.read_text()
 
 
 def test_the_hash_is_of_all_that_results_depend_on(tmp_path):
     path = write(tmp_path, 'title = "as before"\n' and "")
-    plain = run_hash(load(str(path)))
+    plain_hash = run_hash(load(str(path)))
     text = path.read_text()
-    assert run_hash(load(str(path), "", [f"{STEP}=0.01"])) != plain
-    assert run_hash(load(str(path), "", [f"{STIFFNESS}=100"])) == plain, "100 is 100.0"
+    assert run_hash(load(str(path), "", [f"{STEP}=0.01"])) != plain_hash
+    assert run_hash(load(str(path), "", [f"{STIFFNESS}=100"])) == plain_hash, "100 is 100.0"
     path.write_text(f'title = "a title changes nothing"\n{text}')
-    assert run_hash(load(str(path))) == plain
+    assert run_hash(load(str(path))) == plain_hash
     path.write_text(text)
     code = tmp_path / "toy_spring.py"
     code.write_text(f"import own_numbers\n{code.read_text()}")
-    other = run_hash(load(str(path)))
-    assert other != plain
+    own_import_hash = run_hash(load(str(path)))
+    assert own_import_hash != plain_hash
     (tmp_path / "own_numbers.py").write_text("NUMBER = 1\n")
-    imported = run_hash(load(str(path)))
-    assert imported != other, "code that the kind's module imports counts too"
+    imported_hash = run_hash(load(str(path)))
+    assert imported_hash != own_import_hash, "code that the kind's module imports counts too"
     (tmp_path / "elsewhere").mkdir()
     for file in ("scene.toml", "toy_spring.py", "own_numbers.py"):
         (tmp_path / "elsewhere" / file).write_bytes((tmp_path / file).read_bytes())
-    assert run_hash(load(str(tmp_path / "elsewhere" / "scene.toml"))) == imported
+    assert run_hash(load(str(tmp_path / "elsewhere" / "scene.toml"))) == imported_hash

@@ -9,7 +9,7 @@ from quintet.coupler.study.wanted_error import choose, extrapolated_settings
 LADDER = (0.4, 0.2, 0.1)
 
 
-def row(h, value, cpu=None, reference=1.0, scale=1.0, **more):
+def row(h, value, cpu=None, reference=1.0, scale=1.0, **keys):
     """A run of spacing h, with one expectation."""
     error = abs(value - reference)
     return {
@@ -19,53 +19,53 @@ def row(h, value, cpu=None, reference=1.0, scale=1.0, **more):
         "scales": {"end": scale}, "values": {"end": value}, "references": {"end": reference},
         "within": {"end": 1.0}, "units": {"end": "m"}, "required": ["end"],
         "wall": 1.0, "cpu": h**-3 if cpu is None else cpu,
-    } | more  # fmt: skip
+    } | keys  # fmt: skip
 
 
-def chosen(wanted, rows):
+def choice_of(wanted_error, rows):
     refinements = [
-        Refinement(one["label"], one["settings"], varied={"spacing": one["size"], "name": "x"})
-        for one in rows
+        Refinement(row["label"], row["settings"], varied={"spacing": row["size"], "name": "x"})
+        for row in rows
     ]
-    return choose(wanted, conclude("study", rows), refinements)
+    return choose(wanted_error, conclude("study", rows), refinements)
 
 
 def test_the_cheapest_that_delivers_is_recommended_and_none_that_is_cheaper_delivers():
     rows = [row(h, 1.0 + h**2) for h in LADDER]  # errors of 16, 4 and 1 %
-    for wanted, label in (
+    for wanted_error, label in (
         (0.2, "0.4 m"),
         (0.05, "0.2 m"),
         (0.04 + 1e-12, "0.2 m"),
         (0.02, "0.1 m"),
     ):
-        found = chosen(wanted, rows)
-        assert found["measured"]["label"] == label and "extrapolated" not in found
-        assert found["measured"]["relative"] <= wanted
-        cheaper = [one for one in rows if one["cpu"] < found["measured"]["cpu"]]
-        assert all(one["relative"]["end"] > wanted for one in cheaper)
+        choice = choice_of(wanted_error, rows)
+        assert choice["measured"]["label"] == label and "extrapolated" not in choice
+        assert choice["measured"]["relative"] <= wanted_error
+        cheaper = [run for run in rows if run["cpu"] < choice["measured"]["cpu"]]
+        assert all(run["relative"]["end"] > wanted_error for run in cheaper)
 
 
 def test_the_cheapest_need_not_be_the_coarsest():
     rows = [row(0.4, 1.01, cpu=9.0), row(0.2, 1.02, cpu=3.0), row(0.1, 1.03, cpu=5.0)]
-    assert chosen(0.05, rows)["measured"]["label"] == "0.2 m"
+    assert choice_of(0.05, rows)["measured"]["label"] == "0.2 m"
 
 
 def test_every_required_expectation_must_be_within_the_wanted_error():
     rows = [row(h, 1.0 + h**2) for h in LADDER]
-    for one, second in zip(rows, (0.3, 0.03, 0.2), strict=True):
-        one["required"].append("second")
+    for run, second in zip(rows, (0.3, 0.03, 0.2), strict=True):
+        run["required"].append("second")
         for key, value in {"errors": second, "relative": second, "scales": 1.0,
                            "values": second, "references": 0.0}.items():  # fmt: skip
-            one[key]["second"] = value
-    assert chosen(0.05, rows)["measured"]["label"] == "0.2 m"
+            run[key]["second"] = value
+    assert choice_of(0.05, rows)["measured"]["label"] == "0.2 m"
     rows[1]["relative"]["second"] = None  # it was not reached
-    assert "measured" not in chosen(0.05, rows)
+    assert "measured" not in choice_of(0.05, rows)
 
 
 def test_where_none_delivers_the_setting_is_extrapolated_with_its_cost():
-    found = chosen(0.001, [row(h, 1.0 + h**2) for h in LADDER])
-    assert "measured" not in found
-    offer = found["extrapolated"]
+    choice = choice_of(0.001, [row(h, 1.0 + h**2) for h in LADDER])
+    assert "measured" not in choice
+    offer = choice["extrapolated"]
     assert offer["kind"] == "spacing" and offer["from"] == "0.1 m"
     size = offer["size"]
     assert 0.02 < size <= 0.001**0.5 and offer["settings"] == {"spacing": size, "name": "x"}
@@ -74,16 +74,16 @@ def test_where_none_delivers_the_setting_is_extrapolated_with_its_cost():
 
 
 def test_what_no_refinement_of_this_kind_reduces_is_said():
-    found = chosen(0.02, [row(h, 1.05 + h**2) for h in LADDER])  # settles 5 % off
-    assert "extrapolated" not in found and "measured" not in found
-    assert "end would still be 5" in found["reason"]
+    choice = choice_of(0.02, [row(h, 1.05 + h**2) for h in LADDER])  # settles 5 % off
+    assert "extrapolated" not in choice and "measured" not in choice
+    assert "end would still be 5" in choice["reason"]
 
 
 def test_errors_without_a_scale_are_left_out():
     rows = [row(h, h**2, reference=0.0, scale=None) for h in LADDER]
-    found = chosen(0.05, rows)
-    assert found["left_out"] == ["end"] and found["judged"] == []
-    assert found["reason"] == "no required expectation has a relative error"
+    choice = choice_of(0.05, rows)
+    assert choice["left_out"] == ["end"] and choice["judged"] == []
+    assert choice["reason"] == "no required expectation has a relative error"
 
 
 def test_settings_go_on_as_powers_of_the_size():
@@ -93,15 +93,15 @@ def test_settings_go_on_as_powers_of_the_size():
         "spacing": 0.05, "window": 5e-4, "alpha": 0.2, "elements": [16, 8, 1], "a": True,
     }  # fmt: skip
     boxes = [{"highest": [h, 1.0]} for h in (0.2, 0.1)]
-    found = extrapolated_settings({"fluid": [boxes[0]]}, {"fluid": [boxes[1]]}, 2.0)
-    assert found == {"fluid": [{"highest": [0.025, 1.0]}]}
+    settings = extrapolated_settings({"fluid": [boxes[0]]}, {"fluid": [boxes[1]]}, 2.0)
+    assert settings == {"fluid": [{"highest": [0.025, 1.0]}]}
 
 
 @pytest.mark.parametrize(
     "coarse, fine", [("a", "b"), (0.0, 1.0), (-1.0, 1.0), ([1.0], [1.0, 2.0]), (None, 1.0)]
 )
 def test_settings_that_have_no_rule_are_not_extrapolated(coarse, fine):
-    said = extrapolated_settings({"x": coarse}, {"x": fine}, 1.0)
-    assert said == "it cannot be told how x goes on"
-    said = extrapolated_settings({"expect.0.value": 2.0}, {"expect.0.value": 1.0}, 1.0)
-    assert said == "it cannot be told how expect.0.value goes on"
+    message = extrapolated_settings({"x": coarse}, {"x": fine}, 1.0)
+    assert message == "it cannot be told how x goes on"
+    message = extrapolated_settings({"expect.0.value": 2.0}, {"expect.0.value": 1.0}, 1.0)
+    assert message == "it cannot be told how expect.0.value goes on"

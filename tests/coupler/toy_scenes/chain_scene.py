@@ -1,4 +1,4 @@
-"""A scene of a chain of masses that several ranks share, and of what pushes them."""
+"""A scene of a chain of masses that several ranks share, and of a component that pushes it."""
 
 import shutil
 from pathlib import Path

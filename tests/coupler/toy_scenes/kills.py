@@ -1,4 +1,4 @@
-"""Kills of processes of a run at random moments, and what of its work is lost with each."""
+"""Kills of processes of a run at random moments, and the work that each kill loses."""
 
 import contextlib
 import json
@@ -20,49 +20,50 @@ ENDING = 60.0  # s for a run to end after its coupler was killed
 
 
 class Killed:
-    """A run of which processes are killed, and that is resumed where it ends with that.
+    """A run whose processes are killed; it is resumed if a kill ends it.
 
-    A host that goes down is played by killing all processes of the run at the same moment.
+    To imitate a host that goes down, all processes of the run are killed at the same moment.
     """
 
-    def __init__(self, scene, folder, arguments, seed, kills, seconds, who="any"):
+    def __init__(self, scene, folder, arguments, seed, kills, seconds, target="any"):
         self.scene, self.folder, self.arguments = scene, folder, arguments
-        self.told = []  # what was killed, and when
+        self.told = []  # each killed process, and the time
         self._lost = []  # s of work, of kills after which the run was resumed
         self._said = ""  # on the screen, by runs that were resumed
         self.run = Started(scene, *arguments, out=folder)
         choice = random.Random(f"kills {seed}")
         moments = sorted(choice.uniform(0.0, seconds) for _ in range(kills))
-        began = time.monotonic()
+        start = time.monotonic()
         for moment in moments:
-            while time.monotonic() - began < moment and self.run.process.poll() is None:
+            while time.monotonic() - start < moment and self.run.process.poll() is None:
                 time.sleep(0.005)
             if self.run.process.poll() is not None:
                 break
-            self._kill(choice.choice(WHO) if who == "any" else who, choice, moment)
+            self._kill(choice.choice(WHO) if target == "any" else target, choice, moment)
 
     def lost(self):
         """Seconds of work that were lost with each kill."""
         taken_over = re.findall(r"took over after ([\d.]+) s", self._said + self.run.err)
         return self._lost + [float(seconds) for seconds in taken_over]
 
-    def _kill(self, who, choice, moment):
-        ranks = self._components()
+    def _kill(self, target, choice, moment):
+        components = self._components()
         coupler = self._coupler()
-        if who in ("component", "rank") and not ranks:
-            who = "coupler"  # no component has begun yet
-        self.told.append(f"{who} at {moment:.2f} s")
-        if who in ("component", "rank"):
-            several = [pid for pid in ranks if b"--ranks" in words_of(pid)]
-            among = several if who == "rank" and several else ranks
-            end(choice.choice(sorted(among)))
+        if target in ("component", "rank") and not components:
+            target = "coupler"  # no component has begun yet
+        self.told.append(f"{target} at {moment:.2f} s")
+        if target in ("component", "rank"):
+            rank_pids = [pid for pid in components if b"--ranks" in words_of(pid)]
+            candidates = rank_pids if target == "rank" and rank_pids else components
+            end(choice.choice(sorted(candidates)))
             return
         saved = [path.stat().st_mtime for path in self.folder.glob("snapshot-*.h5")]
-        began = Path(f"/proc/{self.run.process.pid}").stat().st_mtime
-        windows = Reached.read(self.folder / "log" / NAME)[0]  # none: nothing is lost but a start
-        self._lost.append(time.time() - max([*saved, began]) if windows else 0.0)
-        pids = self.run.processes() if who == "host" else [coupler]
-        shared = {path for pid in pids for path in mapped(pid)} if who == "host" else ()
+        start = Path(f"/proc/{self.run.process.pid}").stat().st_mtime
+        # Without windows, only a start is lost.
+        windows = Reached.read(self.folder / "log" / NAME)[0]
+        self._lost.append(time.time() - max([*saved, start]) if windows else 0.0)
+        pids = self.run.processes() if target == "host" else [coupler]
+        shared = {path for pid in pids for path in mapped(pid)} if target == "host" else ()
         for pid in pids:
             end(pid)
         self._go_on(shared, bool(saved))
@@ -76,8 +77,8 @@ class Killed:
         with contextlib.suppress(subprocess.TimeoutExpired):
             run.out, run.err = run.process.communicate(timeout=ENDING)
         self._said += run.err
-        left = run.left_processes(5.0)
-        assert not left, f"{left} left after {self.told}"
+        remaining = run.left_processes(5.0)
+        assert not remaining, f"{remaining} left after {self.told}"
         for path in shared:
             Path(path).unlink(missing_ok=True)
         assert not run.left_in_shared_memory(), self.told
@@ -94,7 +95,7 @@ class Killed:
         ]
 
     def _coupler(self):
-        """The process that couples: over MPI one of those that the run has started."""
+        """The process that couples; over MPI it is a child of the run."""
         try:
             job = json.loads((self.folder / "log" / "mpi.json").read_text())
             return int(job["coupler"]) or self.run.process.pid

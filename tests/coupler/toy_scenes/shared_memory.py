@@ -1,4 +1,4 @@
-"""Files in shared memory that the processes of one run have used, whatever else runs here."""
+"""Files in shared memory used by the processes of one run, also beside other runs."""
 
 import os
 import threading
@@ -32,7 +32,7 @@ class SharedFiles:
             time.sleep(INTERVAL)
 
     def note(self):
-        """Note what the run's processes use now."""
+        """Note the files that the run's processes use now."""
         for pid in self.processes():
             self.used |= _files_of(Path(f"/proc/{pid}"))
 
@@ -40,17 +40,17 @@ class SharedFiles:
         """New files that only this run's processes used; they have some time to be deleted."""
         limit = time.monotonic() + seconds
         self.note()
-        while (left := self._left()) and time.monotonic() < limit:
+        while (files := self._left()) and time.monotonic() < limit:
             time.sleep(INTERVAL)
-        return left
+        return files
 
     def _left(self):
-        there = (self.used - self.before) & set(os.listdir(SHARED))
-        if not there:
-            return there
+        files = (self.used - self.before) & set(os.listdir(SHARED))
+        if not files:
+            return files
         for process in Path("/proc").glob("[0-9]*"):
-            there -= _files_of(process)
-        return there
+            files -= _files_of(process)
+        return files
 
 
 def _files_of(process):

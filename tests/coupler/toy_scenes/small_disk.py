@@ -11,7 +11,7 @@ CHUNK = 1 << 12
 
 
 class SmallDisk:
-    """A disk in memory, mounted where nobody else sees it; it is seen here through /proc."""
+    """A disk in memory, mounted in a private namespace; tests reach it through /proc."""
 
     def __init__(self, folder):
         self.place = folder / "small"
@@ -28,7 +28,7 @@ class SmallDisk:
         return Path(f"/proc/{self.holder.pid}/root{path}")
 
     def fill(self, *_):
-        """Leave no byte free, also of what a run has made sure of for a moment only."""
+        """Leave no byte free, also of the space that a run reserves only for a moment."""
         with open(self.seen(self.place / "ballast"), "wb", buffering=0) as file:
             for _ in range(20):
                 with contextlib.suppress(OSError):
@@ -41,7 +41,7 @@ class SmallDisk:
         self.seen(self.place / "ballast").unlink()
 
     def close(self):
-        """Let it go, with all that is on it."""
+        """Unmount the disk; its files are lost."""
         self.holder.kill()
         self.holder.communicate()
 
@@ -60,12 +60,12 @@ class SizeLimit:
         return Path(path)
 
     def fill(self, pid, path):
-        """Let a file of a process grow no more; smaller ones may."""
+        """Stop the growth of a file of a process; smaller files may still grow."""
         size = max(path.stat().st_size // 2 if path.suffix == ".h5" else 0, 1 << 14)
         resource.prlimit(pid, resource.RLIMIT_FSIZE, (size, resource.RLIM_INFINITY))
 
     def empty(self):
-        """Let files grow again: what is started now has no limit."""
+        """Let files grow again: processes started from now on have no limit."""
 
     def close(self):
-        """Let it go."""
+        """Do nothing: no disk is mounted."""

@@ -1,4 +1,4 @@
-"""A scene of one spring, ω = 10 rad/s, and what stands in it beside."""
+"""A scene of one spring, ω = 10 rad/s, and commands that read it."""
 
 import json
 import shutil
@@ -40,13 +40,13 @@ def write(folder, more="", within=2e-3):
 
 def command(*arguments):
     """Exit status of a command."""
-    with pytest.raises(SystemExit) as ended:
-        main([str(one) for one in arguments])
-    return ended.value.code
+    with pytest.raises(SystemExit) as exit_info:
+        main([str(argument) for argument in arguments])
+    return exit_info.value.code
 
 
-def found_by(name, path, *arguments):
-    """Run a command that writes JSON; return its exit status, and what it found."""
+def command_json(name, path, *arguments):
+    """Run a command that writes JSON; return its exit status and the JSON."""
     file = path.parent / "found.json"
     out = path.parent / "all"
     status = command(name, path, "--out", out, "--json", file, *arguments)

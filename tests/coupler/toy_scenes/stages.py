@@ -9,16 +9,18 @@ from quintet.coupler.cli import main
 
 def status(*arguments):
     """Exit status of a command."""
-    with pytest.raises(SystemExit) as ended:
+    with pytest.raises(SystemExit) as exit_info:
         main([str(argument) for argument in arguments])
-    return ended.value.code
+    return exit_info.value.code
 
 
 def run(scene, out, *settings, transport="memory", preset=None):
     """Run a scene with settings; return its folder."""
-    sets = [part for setting in settings for part in ("--set", setting)]
-    chosen = ["--preset", preset] if preset else []
-    assert status("run", scene, *chosen, "--transport", transport, "--out", out, *sets) in (0, 1)
+    arguments = [argument for setting in settings for argument in ("--set", setting)]
+    preset_arguments = ["--preset", preset] if preset else []
+    assert status(
+        "run", scene, *preset_arguments, "--transport", transport, "--out", out, *arguments
+    ) in (0, 1)
     return out
 
 
@@ -32,11 +34,13 @@ def rows(folder):
         }
 
 
-def is_the_end_of(again, whole):
+def is_the_end_of(continued, whole):
     """Whether the fields of a run have the bits of the last rows of another."""
-    ends = {key: array[len(array) - len(rows(again)[key]) :] for key, array in rows(whole).items()}
-    assert ends.keys() == rows(again).keys() and ends
-    return all(np.array_equal(ends[key], array) for key, array in rows(again).items())
+    ends = {
+        key: array[len(array) - len(rows(continued)[key]) :] for key, array in rows(whole).items()
+    }
+    assert ends.keys() == rows(continued).keys() and ends
+    return all(np.array_equal(ends[key], array) for key, array in rows(continued).items())
 
 
 def two_stages(scene, folder, half, *settings, transport="memory", preset=None):
@@ -46,5 +50,5 @@ def two_stages(scene, folder, half, *settings, transport="memory", preset=None):
     keep = ("output.states=[1e9]", f"end={half}")
     run(scene, folder / "first", *settings, *keep, transport=transport, preset=preset)
     begin = (f"end={half}", f'begin_from="{folder / "first"}"')
-    again = run(scene, folder / "again", *settings, *begin, transport=transport, preset=preset)
-    return whole, again
+    continued = run(scene, folder / "again", *settings, *begin, transport=transport, preset=preset)
+    return whole, continued

@@ -1,4 +1,4 @@
-"""Runs of toy scenes in processes of their own, and what they leave behind."""
+"""Runs of toy scenes in processes of their own, and the processes and files they leave behind."""
 
 import json
 import os
@@ -35,26 +35,26 @@ pairs = [["ping.out", "pong.in"], ["pong.out", "ping.in"]]
 
 
 def write_scene(folder, transport="memory", end=1.0, ping="", pong=""):
-    """Two toys that give each other what they take; `end` counts seconds of 1000 windows."""
+    """Two toys that exchange numbers; `end` counts seconds of 1000 windows."""
     shutil.copy(TOYS, folder / "toys.py")
     path = folder / "scene.toml"
     path.write_text(SCENE.format(transport=transport, end=end, ping=ping, pong=pong))
     return path
 
 
-def same(one, other):
-    """Whether two runs left the same, but for the times of the clock."""
-    assert (one / "recording.h5").exists() == (other / "recording.h5").exists()
-    assert not (one / "recording.h5").exists() or compare(one, other) is None
-    assert (one / "ledger.csv").read_bytes() == (other / "ledger.csv").read_bytes()
-    found = [json.loads((folder / "results.json").read_text()) for folder in (one, other)]
+def same(folder_a, folder_b):
+    """Whether two runs wrote the same results, except for clock times."""
+    assert (folder_a / "recording.h5").exists() == (folder_b / "recording.h5").exists()
+    assert not (folder_a / "recording.h5").exists() or compare(folder_a, folder_b) is None
+    assert (folder_a / "ledger.csv").read_bytes() == (folder_b / "ledger.csv").read_bytes()
+    results = [json.loads((folder / "results.json").read_text()) for folder in (folder_a, folder_b)]
     for key in ("status", "windows", "time", "expect", "ledger"):
-        assert found[0][key] == found[1][key], key
-    for path in one.glob("*.vtkhdf"):
+        assert results[0][key] == results[1][key], key
+    for path in folder_a.glob("*.vtkhdf"):
         times = vtkhdf_reader.times(path)
-        assert list(times) == list(vtkhdf_reader.times(other / path.name))
+        assert list(times) == list(vtkhdf_reader.times(folder_b / path.name))
         for k in range(len(times)):
-            views = [vtkhdf_reader.read_step(run / path.name, k)[1] for run in (one, other)]
+            views = [vtkhdf_reader.read_step(run / path.name, k)[1] for run in (folder_a, folder_b)]
             assert all((views[0][key] == views[1][key]).all() for key in views[0])
     return True
 
@@ -82,7 +82,7 @@ class Started:
 
     @staticmethod
     def command(scene):
-        """What a user types."""
+        """The command that a user types."""
         return [sys.executable, "-m", "quintet.coupler.cli", "run", str(scene)]
 
     def wait(self, seconds=60.0):
@@ -94,24 +94,24 @@ class Started:
         return self.process.returncode
 
     def end(self):
-        """End whatever of it still runs."""
+        """Kill the processes of the run that still run."""
         for pid in self.processes():
             os.kill(pid, signal.SIGKILL)
 
     def processes(self):
         """Processes of this run: they all inherit the mark."""
-        found = []
+        pids = []
         for entry in Path("/proc").iterdir():
             if entry.name.isdigit() and self._is_mine(entry):
-                found.append(int(entry.name))
-        return found
+                pids.append(int(entry.name))
+        return pids
 
     def left_processes(self, seconds=2.0):
-        """Processes that the run has left: the one beside it, which must outlive it, ends after."""
+        """Processes that the run has left; its companion process may end a little after the run."""
         limit = time.monotonic() + seconds
-        while (found := self.processes()) and time.monotonic() < limit:
+        while (pids := self.processes()) and time.monotonic() < limit:
             time.sleep(0.01)
-        return found
+        return pids
 
     def _is_mine(self, entry):
         try:
@@ -120,13 +120,13 @@ class Started:
         except OSError:
             return False
 
-    def wait_until(self, true, seconds=30.0):
-        """Wait until something is true of the run."""
+    def wait_until(self, condition, seconds=30.0):
+        """Wait until a condition of the run holds; return its value."""
         limit = time.monotonic() + seconds
-        while not (found := true()):
+        while not (result := condition()):
             assert time.monotonic() < limit, "it did not come to that"
             time.sleep(0.005)
-        return found
+        return result
 
     def wait_for_windows(self):
         """Wait until a component has stepped for a while; return nothing."""
@@ -134,7 +134,7 @@ class Started:
         self.wait_until(lambda: steps.is_file() and "step 50" in steps.read_text())
 
     def pid_of(self, name):
-        """Process of a component, as its log says."""
+        """Process of a component, from its log."""
         text = (self.folder / "log" / f"{name}.log").read_text()
         return int(re.search(r"process (\d+)", text)[1])
 

@@ -1,4 +1,4 @@
-"""Every fault that a solver may have, and a component that has one at a moment of its run."""
+"""Every fault that a solver may have, and a component that fails at a chosen moment of its run."""
 
 import ctypes
 import gc
@@ -41,8 +41,8 @@ subprocess.Popen([sys.executable, "-c", "{SLEEPS}"], env={{}}, start_new_session
 def due(params):
     """Whether to fail now: `times` in all, at moments that are noted in a file."""
     path = Path(params.moment)
-    before = path.read_text().count("\n") if path.is_file() else 0
-    if before >= params.times:
+    failures = path.read_text().count("\n") if path.is_file() else 0
+    if failures >= params.times:
         return False
     with open(path, "a") as file:
         file.write(f"{time.time()!r}\n")
@@ -50,7 +50,7 @@ def due(params):
 
 
 def fail(cause, endless=None):
-    """Fail, where that is done by code that runs; causes that spoil outputs do nothing here."""
+    """Fail in running code; causes that spoil outputs do nothing here."""
     match cause:
         case "exception":
             raise ArithmeticError("asked to raise")
@@ -91,11 +91,11 @@ def exhaust():
     with open("/proc/self/statm") as file:
         used = int(file.read().split()[0]) * resource.getpagesize()
     resource.setrlimit(resource.RLIMIT_AS, (used + SPARE, resource.RLIM_INFINITY))
-    held = []
+    arrays = []
     for size in (1_000_000, 1000):  # soon, and then to the last
         try:
             while True:
-                held.append(np.empty(size))
+                arrays.append(np.empty(size))
         except MemoryError:
             if size == 1000:
                 raise
@@ -104,7 +104,7 @@ def exhaust():
 def cut_link():
     """Close the connection of this process to the coupler; the process lives on."""
     sessions = sys.modules["quintet.interfaces.lines.zenoh"].Session
-    for session in [each for each in gc.get_objects() if isinstance(each, sessions)]:
+    for session in [instance for instance in gc.get_objects() if isinstance(instance, sessions)]:
         session.zenoh.close()
 
 
@@ -135,13 +135,13 @@ def spoiled(cause, number):
             return {"out.number": number + 1j}
         case "None":
             return {"out.push": None}
-        case "huge":  # 6 GB, of which nothing is in memory
+        case "huge":  # 6 GB, none of it in memory
             return {"out.number": np.broadcast_to(0.0, (250_000_000, 3))}
     return {}
 
 
 class Faulty(Toy):
-    """Fails as it is asked to, the first few times that it comes to that moment."""
+    """Fails by the given cause, the first few times that it reaches the given moment."""
 
     @parameters
     class Params:
@@ -161,21 +161,21 @@ class Faulty(Toy):
 
     def __init__(self, params):
         super().__init__(params)
-        self.odd = ""  # the fault of all that it gives
+        self.odd = ""  # the fault of its outputs
         self.since_save = 0  # steps
         self.other = params.differs and Path(params.moment).is_file()
         loops = {"compiled loop": True, "locked loop": False}
-        by = params.fails_by
-        self.endless = compiled(loops[by]) if by in loops else None
+        cause = params.fails_by
+        self.endless = compiled(loops[cause]) if cause in loops else None
         if params.child:
             subprocess.Popen([sys.executable, "-c", OUTLIVES])
         if params.orphan:
             subprocess.run([sys.executable, "-c", ORPHANED], check=True)
         self.come_to("build")
 
-    def come_to(self, moment, here=True):
-        """Fail if that is asked for at this moment."""
-        if moment == self.params.fails_in and here and due(self.params):
+    def come_to(self, moment, condition=True):
+        """Fail if the parameters ask for a failure at this moment."""
+        if moment == self.params.fails_in and condition and due(self.params):
             self.odd = self.params.fails_by
             fail(self.params.fails_by, self.endless)
 

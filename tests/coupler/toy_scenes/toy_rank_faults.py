@@ -11,7 +11,7 @@ from quintet.interfaces.params import Count, parameters
 
 
 class FaultyChain(Chain):
-    """Fails on one rank: as it is built, before a step, or after it, when others have gone on."""
+    """Fails on one rank: during its build, before a step, or after it, when others have gone on."""
 
     @parameters
     class Params:
@@ -30,7 +30,7 @@ class FaultyChain(Chain):
         self.come_to("build")
 
     def come_to(self, moment):
-        """Fail if that is asked for at this moment."""
+        """Fail if the parameters ask for a failure at this moment."""
         params = self.params
         if self.rank == params.fails_on and moment == params.fails_in and due(params):
             if moment == "after":
@@ -39,11 +39,11 @@ class FaultyChain(Chain):
             fail(params.fails_by)
 
     def step(self, dt):
-        now = self.steps == self.params.fails_at
-        if now:
+        fails_now = self.steps == self.params.fails_at
+        if fails_now:
             self.come_to("step")
         super().step(dt)
-        if now:
+        if fails_now:
             self.come_to("after")
 
     def give(self, wanted):

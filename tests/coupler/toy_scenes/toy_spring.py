@@ -8,7 +8,7 @@ from quintet.interfaces.ports import POSITION, VELOCITY
 
 
 class Spring(Component):
-    """Steps exactly as it is told to."""
+    """Steps with exactly the given step."""
 
     @parameters
     class Params:

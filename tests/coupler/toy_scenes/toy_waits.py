@@ -1,4 +1,4 @@
-"""Components that let others wait: for a good reason, or as they are built or left."""
+"""Components that let others wait: for a good reason, during their build, or at their exit."""
 
 import atexit
 import os
@@ -18,7 +18,7 @@ OPENS = "import time; time.sleep({}); open('pipe', 'w')"
 
 
 def wait_as_for_a_disk(seconds):
-    """Wait uninterruptibly: who starts a process does, until that one has opened its files."""
+    """Wait uninterruptibly: a parent waits so until its child process has opened its files."""
     os.mkfifo("pipe")
     subprocess.Popen([sys.executable, "-c", OPENS.format(seconds)])
     opens = [(os.POSIX_SPAWN_OPEN, 0, "pipe", os.O_RDONLY, 0)]
@@ -97,7 +97,7 @@ class Slow(Toy):
 
 
 class Hanging(Toy):
-    """Hangs as it is built, or as the process that it is in ends."""
+    """Hangs during its build, or at the exit of its process."""
 
     @parameters
     class Params:

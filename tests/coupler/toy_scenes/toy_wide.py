@@ -44,7 +44,7 @@ class Loads(Component):
 
 
 class Shared(Component):
-    """Takes the loads on its items, and gives what they sum up to on each of eight parts."""
+    """Takes the loads on its items, and gives their sum on each of eight parts."""
 
     Params = Width
     ranks = True
@@ -68,19 +68,21 @@ class Shared(Component):
 
     def prime(self, fields):
         if not self.leads and not self.params.all_rows:
-            here = self.rank_rows("load")
-            assert fields["load.force"][here].any()
-            assert not np.delete(fields["load.force"], here, axis=0).any()
+            rows = self.rank_rows("load")
+            assert fields["load.force"][rows].any()
+            assert not np.delete(fields["load.force"], rows, axis=0).any()
 
     def stable_dt(self):
         return 1e-3
 
     def take(self, fields):
-        both = fields["load.force"], fields["load.velocity"]
-        self.sums = np.array([sum(rows[part].sum(axis=0) for rows in both) for part in self.slices])
+        arrays = fields["load.force"], fields["load.velocity"]
+        self.sums = np.array(
+            [sum(rows[part].sum(axis=0) for rows in arrays) for part in self.slices]
+        )
 
     def step(self, dt):
-        """Do nothing: what is measured is the way to here."""
+        """Do nothing: the transfer of the loads is measured."""
 
     def whole(self):
         """Sums of all parts, on all ranks."""

@@ -17,7 +17,7 @@ NUMBER = (Field("number", (3,), "m"), Field("push", (3,), "N", "impulse"))
 
 
 class Toy(Component):
-    """Gives back what it takes, a little changed."""
+    """Gives the number it takes, slightly changed."""
 
     @parameters
     class Params:
@@ -127,17 +127,17 @@ class Bare(Component):
     stable_dt = take = step = give = save = load = lambda self, *_: None
 
 
-def other(name, field):
+def misfit(name, field):
     """A toy whose field differs."""
     ports = {"takes": (Port("in", (field,)),), "gives": (Port("out", (field,)),)}
     return type(name, (Toy,), {**ports, "__doc__": "A toy that does not fit."})
 
 
-InSeconds = other("InSeconds", Field("number", (3,), "s"))
-Impulsive = other("Impulsive", Field("number", (3,), "m/s", "impulse"))
-Instant = other("Instant", Field("push", (3,), "N"))
-Scalar = other("Scalar", Field("number", (), "m"))
-Unknown = other("Unknown", Field("heat", (3,), "m"))
+InSeconds = misfit("InSeconds", Field("number", (3,), "s"))
+Impulsive = misfit("Impulsive", Field("number", (3,), "m/s", "impulse"))
+Instant = misfit("Instant", Field("push", (3,), "N"))
+Scalar = misfit("Scalar", Field("number", (), "m"))
+Unknown = misfit("Unknown", Field("heat", (3,), "m"))
 
 
 class Fragile(Toy):
