@@ -1,4 +1,4 @@
-"""The benchmark of the exchange measures each transport, and writes what it found."""
+"""The benchmark of the exchange measures each transport, and writes its results."""
 
 import json
 
@@ -27,22 +27,22 @@ KEYS = {
 def test_the_exchange_is_measured(tmp_path, monkeypatch, capsys, transport):
     monkeypatch.setattr(exchange, "SIZES", {100: 200, 1000: 100})
     file = tmp_path / "found.json"
-    with pytest.raises(SystemExit) as ended:
+    with pytest.raises(SystemExit) as exit_info:
         main(["bench", "exchange", "--transport", transport, "--json", str(file)])
-    assert ended.value.code == 0
-    found = json.loads(file.read_text())
-    assert [one["items"] for one in found] == [100, 1000]
-    for one, size in zip(found, ("2.4 kB", "24 kB"), strict=True):
-        assert one.keys() >= KEYS and size in one["case"] and transport in one["case"]
-        assert one["unit"] == "windows/s" and one["rate"] > 20.0
-        assert 0.0 < one["median_ms"] <= one["p99_ms"] and one["library_ms"] > 0.0
+    assert exit_info.value.code == 0
+    rows = json.loads(file.read_text())
+    assert [row["items"] for row in rows] == [100, 1000]
+    for row, size in zip(rows, ("2.4 kB", "24 kB"), strict=True):
+        assert row.keys() >= KEYS and size in row["case"] and transport in row["case"]
+        assert row["unit"] == "windows/s" and row["rate"] > 20.0
+        assert 0.0 < row["median_ms"] <= row["p99_ms"] and row["library_ms"] > 0.0
     assert capsys.readouterr().out.count("windows/s") == 2
 
 
 def test_an_unknown_benchmark_is_refused(capsys):
-    with pytest.raises(SystemExit) as ended:
+    with pytest.raises(SystemExit) as exit_info:
         main(["bench", "exchnge"])
-    assert ended.value.code == 2
+    assert exit_info.value.code == 2
     assert "bench exchnge is not known. Did you mean exchange?" in capsys.readouterr().err
 
 

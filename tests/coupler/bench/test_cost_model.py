@@ -1,4 +1,4 @@
-"""The cost model finds the numbers that made its measurements, and predicts what its law says."""
+"""The cost model finds the numbers behind its measurements, and predicts times by its law."""
 
 import math
 from itertools import pairwise
@@ -27,21 +27,23 @@ KNOWN = {"per_item": 1.3e-6, "per_halo_byte": 2e-9, "per_step": 4e-4}
 COUNTED = {"halo": 48.0, "exchanges": 6.0, "collectives": 9.0, "gathered": 0.3}
 
 
-def synthetic(items, ranks, imbalance=1.07, **changed):
+def synthetic(items, ranks, imbalance=1.07, **changes):
     """A measurement of a component whose numbers are known."""
-    known = KNOWN | COUNTED | changed
-    each = items / ranks
-    halo = known["halo"] * faces(each, ranks, 3)
-    several = ranks > 1
+    numbers = KNOWN | COUNTED | changes
+    items_per_rank = items / ranks
+    halo = numbers["halo"] * faces(items_per_rank, ranks, 3)
+    is_parallel = ranks > 1
     return Measurement(
         items,
         ranks,
-        known["per_item"] * each + known["per_halo_byte"] * halo + known["per_step"],
-        imbalance if several else 1.0,
-        known["exchanges"] * neighbours(ranks, 3),
+        numbers["per_item"] * items_per_rank
+        + numbers["per_halo_byte"] * halo
+        + numbers["per_step"],
+        imbalance if is_parallel else 1.0,
+        numbers["exchanges"] * neighbours(ranks, 3),
         halo,
-        known["collectives"] if several else 0.0,
-        known["gathered"] * items * (1.0 - 1.0 / ranks),
+        numbers["collectives"] if is_parallel else 0.0,
+        numbers["gathered"] * items * (1.0 - 1.0 / ranks),
     )
 
 
@@ -70,8 +72,8 @@ def test_a_prediction_is_the_law_with_the_numbers_that_made_the_measurements(ran
 
 
 def test_a_measurement_that_follows_no_law_shows_in_the_residual():
-    odd = [*MEASURED[:-1], synthetic(50653, 4, per_item=2.6e-6, halo=96.0)]
-    model = fit(odd)
+    measurements = [*MEASURED[:-1], synthetic(50653, 4, per_item=2.6e-6, halo=96.0)]
+    model = fit(measurements)
     assert model.residuals["compute"] > 0.05 and model.residuals["halo"] > 0.05
     assert model.residuals["messages"] < 1e-12
     assert model.per_item != pytest.approx(KNOWN["per_item"], rel=1e-3)
@@ -112,16 +114,16 @@ def test_no_number_is_negative_and_none_nearer(seed):
 def test_parts_are_counted_as_those_of_a_halved_cube(dimensions):
     """Against a lattice of parts in which every face and corner is looked at."""
     for halvings in range(10):
-        along = [round(p) for p in parts(2**halvings, dimensions)]
-        assert math.prod(along) == 2**halvings
-        centre = [(p - 1) // 2 for p in along]
-        places = np.stack(np.meshgrid(*map(np.arange, along), indexing="ij"), -1)
+        counts = [round(p) for p in parts(2**halvings, dimensions)]
+        assert math.prod(counts) == 2**halvings
+        centre = [(p - 1) // 2 for p in counts]
+        places = np.stack(np.meshgrid(*map(np.arange, counts), indexing="ij"), -1)
         distance = np.abs(places.reshape(-1, dimensions) - centre)
         touching = distance[(distance.max(axis=1) == 1)]
         assert neighbours(2**halvings, dimensions) == len(touching)
-        sides = 1.0 / np.array(along)  # of a part of the unit cube
-        across = touching[touching.sum(axis=1) == 1]
-        area = sum(math.prod(sides[row == 0]) for row in across)
+        sides = 1.0 / np.array(counts)  # of a part of the unit cube
+        face_neighbours = touching[touching.sum(axis=1) == 1]
+        area = sum(math.prod(sides[row == 0]) for row in face_neighbours)
         items = 512.0  # of a part, so many more in the cube
         lattice = (items * 2**halvings) ** (1.0 - 1.0 / dimensions)
         assert faces(items, 2**halvings, dimensions) == pytest.approx(area * lattice)
@@ -150,10 +152,10 @@ def test_a_slower_network_costs_what_its_messages_say():
 
 def test_a_run_is_scaled_to_the_step_that_it_took():
     model = fit(MEASURED)
-    there = of_model(model, NETWORK, 1e6, 2)
-    same = of_run(model, NETWORK, 1e6, there.total, 2, 64)
-    assert same == pytest.approx(of_model(model, NETWORK, 1e6, 64))
-    heavier = of_run(model, NETWORK, 1e6, there.total + there.compute, 2, 64)
-    assert heavier.compute == pytest.approx(2.0 * same.compute) and heavier[1:] == same[1:]
+    on_two_ranks = of_model(model, NETWORK, 1e6, 2)
+    scaled = of_run(model, NETWORK, 1e6, on_two_ranks.total, 2, 64)
+    assert scaled == pytest.approx(of_model(model, NETWORK, 1e6, 64))
+    heavier = of_run(model, NETWORK, 1e6, on_two_ranks.total + on_two_ranks.compute, 2, 64)
+    assert heavier.compute == pytest.approx(2.0 * scaled.compute) and heavier[1:] == scaled[1:]
     with pytest.raises(ValueError, match="must take longer than its messages"):
         of_run(model, NETWORK, 1e6, 1e-9, 2, 64)

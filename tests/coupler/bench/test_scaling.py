@@ -1,4 +1,4 @@
-"""`quintet scaling` keeps what was measured apart from what is extrapolated; bad input is told."""
+"""`quintet scaling` keeps measured and extrapolated values apart, and reports bad input."""
 
 import json
 
@@ -49,9 +49,9 @@ def file(tmp_path):
 
 
 def quintet(*arguments):
-    with pytest.raises(SystemExit) as ended:
+    with pytest.raises(SystemExit) as exit_info:
         main([*map(str, arguments)])
-    return ended.value.code
+    return exit_info.value.code
 
 
 def test_measured_and_extrapolated_stand_in_tables_of_their_own(file, capsys):

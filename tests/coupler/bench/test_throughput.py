@@ -14,9 +14,9 @@ KEYS = {"name", "case", "items", "threads", "rate", "unit", "cpu_seconds", "wall
 
 
 def bench(*arguments):
-    with pytest.raises(SystemExit) as ended:
+    with pytest.raises(SystemExit) as exit_info:
         main(["bench", *map(str, arguments)])
-    return ended.value.code
+    return exit_info.value.code
 
 
 @pytest.fixture
@@ -27,23 +27,23 @@ def beside_the_toys(monkeypatch):
 def test_a_case_is_measured_in_steps_of_its_items(tmp_path, capsys, beside_the_toys):
     file = tmp_path / "found.json"
     assert bench(KIND, "--case", "small", "--threads", 1, "--json", file) == 0
-    (found,) = json.loads(file.read_text())
-    assert found.keys() >= {*KEYS, "bytes_per_item", "options", "wall_rate"}
-    assert (found["case"], found["items"], found["unit"]) == ("small", 7, "toy-steps/s")
-    assert found["options"] == {"steps": 20, "warm": 3, "params": {"items": 7, "pause": 0.005}}
+    (row,) = json.loads(file.read_text())
+    assert row.keys() >= {*KEYS, "bytes_per_item", "options", "wall_rate"}
+    assert (row["case"], row["items"], row["unit"]) == ("small", 7, "toy-steps/s")
+    assert row["options"] == {"steps": 20, "warm": 3, "params": {"items": 7, "pause": 0.005}}
     # Each step sleeps for 5 ms: by the clock they take that long, on the processor far less.
-    assert 0.1 <= found["wall_seconds"] and found["cpu_seconds"] < found["wall_seconds"]
-    assert found["wall_rate"] == pytest.approx(7 * 20 / found["wall_seconds"])
-    assert found["rate"] == pytest.approx(7 * 20 / found["cpu_seconds"])
+    assert 0.1 <= row["wall_seconds"] and row["cpu_seconds"] < row["wall_seconds"]
+    assert row["wall_rate"] == pytest.approx(7 * 20 / row["wall_seconds"])
+    assert row["rate"] == pytest.approx(7 * 20 / row["cpu_seconds"])
     assert "toy-steps/s" in capsys.readouterr().out
 
 
 def test_memory_is_what_the_component_holds(tmp_path, beside_the_toys):
     file = tmp_path / "found.json"
     assert bench(KIND, "--case", "large", "--threads", 1, "--json", file) == 0
-    (found,) = json.loads(file.read_text())
+    (row,) = json.loads(file.read_text())
     # A million items of two arrays of three doubles; a step makes a third, and drops one.
-    assert found["bytes_per_item"] == pytest.approx(48.0, rel=0.05)
+    assert row["bytes_per_item"] == pytest.approx(48.0, rel=0.05)
 
 
 def test_more_threads_are_compared_with_one(tmp_path, capsys, beside_the_toys):
@@ -63,11 +63,11 @@ def test_what_cannot_be_measured_is_refused(capsys, beside_the_toys):
 
 @pytest.mark.parametrize("kind", [kind for kind in known_kinds() if find(kind).bench])
 def test_the_cases_of_every_kind_are_valid(kind):
-    known = find(kind)
-    cases = known.cases()
+    manifest = find(kind)
+    cases = manifest.cases()
     assert cases
     for case in cases:
-        assert not read(known.params, case.params, case.name)[1]
+        assert not read(manifest.params, case.params, case.name)[1]
 
 
 @pytest.mark.mpi
@@ -75,14 +75,18 @@ def test_ranks_that_share_a_component_are_compared_with_one(tmp_path, capsys):
     file = tmp_path / "found.json"
     arguments = ("--case", "vortex, 10k nodes, 9 neighbours", "--threads", 1, "--json", file)
     assert bench("meshless_gas", *arguments, "--ranks", 1, "--ranks", 2) == 0
-    one, two = json.loads(file.read_text())
-    assert (one["ranks"], two["ranks"], one["waits"]) == (1, 2, 0.0)
-    assert two["items"] == one["items"] and 0.0 < two["waits"] < 1.0
-    assert (one["imbalance"], one["collectives"], one["gathered_bytes"]) == (1.0, 0.0, 0.0)
-    assert 1.0 <= two["imbalance"] < 2.0 and two["collectives"] >= 1.0
-    assert 1000 < two["halo_bytes"] < 5000 * 5 * 8  # of nodes near the border only
-    assert two["gathered_bytes"] < 1000
-    assert two["network"]["latency"] > 0.0 and two["network"]["bandwidth"] > 0.0
+    one_rank, two_ranks = json.loads(file.read_text())
+    assert (one_rank["ranks"], two_ranks["ranks"], one_rank["waits"]) == (1, 2, 0.0)
+    assert two_ranks["items"] == one_rank["items"] and 0.0 < two_ranks["waits"] < 1.0
+    assert (one_rank["imbalance"], one_rank["collectives"], one_rank["gathered_bytes"]) == (
+        1.0,
+        0.0,
+        0.0,
+    )
+    assert 1.0 <= two_ranks["imbalance"] < 2.0 and two_ranks["collectives"] >= 1.0
+    assert 1000 < two_ranks["halo_bytes"] < 5000 * 5 * 8  # of nodes near the border only
+    assert two_ranks["gathered_bytes"] < 1000
+    assert two_ranks["network"]["latency"] > 0.0 and two_ranks["network"]["bandwidth"] > 0.0
     assert "ranks" in capsys.readouterr().out
 
 
