@@ -1,4 +1,4 @@
-"""What a seed chooses, and what each disturbance does by itself."""
+"""The choices of a seed, and the effect of each disturbance by itself."""
 
 import errno
 import subprocess
@@ -22,7 +22,7 @@ RANKS = {"water": 2, "cubes": 1}
 SEEDS = range(300)
 
 
-def chosen(transport, **keys):
+def faults_of(transport, **keys):
     """All disturbances of many seeds."""
     return [fault for seed in SEEDS for fault in choose(seed, transport, RANKS, **keys)]
 
@@ -34,19 +34,19 @@ def test_a_seed_chooses_the_same_places_again_and_another_seed_others():
 
 @pytest.mark.parametrize("transport", KINDS)
 def test_every_kind_that_makes_sense_over_a_transport_is_chosen_and_no_other(transport):
-    assert {fault.kind for fault in chosen(transport)} == set(KINDS[transport])
+    assert {fault.kind for fault in faults_of(transport)} == set(KINDS[transport])
     assert not set(KINDS["memory"]) & {*PROCESSES, *FRAMES}
     assert not set(KINDS["mpi"]) & set(FRAMES)
 
 
 def test_every_rank_of_a_component_is_disturbed():
-    ranks = {fault.rank for fault in chosen("mpi") if fault.component == "water"}
+    ranks = {fault.rank for fault in faults_of("mpi") if fault.component == "water"}
     assert ranks == {-1, 0, 1}  # -1: not one of its processes
-    assert {fault.rank for fault in chosen("mpi") if fault.component == "cubes"} == {-1}
+    assert {fault.rank for fault in faults_of("mpi") if fault.component == "cubes"} == {-1}
 
 
 def test_processes_that_the_run_does_not_start_are_left_alone():
-    kinds = {f.kind for f in chosen("zenoh", elsewhere=["cubes"]) if f.component == "cubes"}
+    kinds = {f.kind for f in faults_of("zenoh", elsewhere=["cubes"]) if f.component == "cubes"}
     assert kinds == {*FRAMES, *EVERYWHERE} - {"full disk"}
 
 
@@ -67,8 +67,8 @@ def test_just_one_bit_of_a_corrupted_frame_differs(place):
 
 
 def test_a_full_disk_refuses_as_many_pieces_as_it_was_told_to_and_leaves_files_whole(tmp_path):
-    said = []
-    disk = FullDisk(said.append)
+    messages = []
+    disk = FullDisk(messages.append)
     table = TableFile(tmp_path / "ledger.csv")
     try:
         table.write([1, 2])
@@ -77,15 +77,15 @@ def test_a_full_disk_refuses_as_many_pieces_as_it_was_told_to_and_leaves_files_w
         table.write([3, 4])
         with pytest.raises(DiskError, match=r"ledger\.csv: it cannot be written, as the disk at"):
             table.flush()
-        with pytest.raises(DiskError, match="is full") as raised:
+        with pytest.raises(DiskError, match="is full") as error_info:
             write_whole(tmp_path / "scene.toml", "name")
-        assert raised.value.__cause__.errno == errno.ENOSPC
+        assert error_info.value.__cause__.errno == errno.ENOSPC
         write_whole(tmp_path / "scene.toml", "name")
     finally:
         disk.close()
     assert Writing.begin(tmp_path) is None
     assert (tmp_path / "ledger.csv").read_text().split() == ["1,2"]
-    assert said == [f"the disk is full for {name}" for name in ("ledger.csv", "scene.toml")]
+    assert messages == [f"the disk is full for {name}" for name in ("ledger.csv", "scene.toml")]
 
 
 def test_a_process_that_is_slowed_down_is_not_taken_for_one_that_was_stopped():
@@ -93,11 +93,11 @@ def test_a_process_that_is_slowed_down_is_not_taken_for_one_that_was_stopped():
     try:
         probe, signals = ProcessProbe("water", process.pid, process), Signals()
         signals.slow(process.pid, 1.0)
-        limit, taken = time.monotonic() + 0.8, []
+        limit, states = time.monotonic() + 0.8, []
         while time.monotonic() < limit:
-            taken.append(probe.stopped())
+            states.append(probe.stopped())
             time.sleep(0.05)
-        assert not any(taken)
+        assert not any(states)
         signals.close()
         assert psutil.Process(process.pid).status() != psutil.STATUS_STOPPED
     finally:
