@@ -1,4 +1,4 @@
-"""``quintet conform``: what is tried, one line for each law, and the exit status."""
+"""``quintet conform``: the laws it tries, one line for each, and the exit status."""
 
 import json
 import os
@@ -39,13 +39,13 @@ scale."foot.position" = 0.1
 
 @pytest.fixture
 def conform(capsys):
-    """Run the command; its status, and what it said to the user and of mistakes."""
+    """Run the command; return its status, its output and its errors."""
 
     def run(*arguments):
-        with pytest.raises(SystemExit) as ended:
+        with pytest.raises(SystemExit) as exit_info:
             main(["conform", *map(str, arguments)])
-        said = capsys.readouterr()
-        return ended.value.code, said.out, said.err
+        screen = capsys.readouterr()
+        return exit_info.value.code, screen.out, screen.err
 
     return run
 
@@ -57,9 +57,9 @@ def _file(folder, text):
 
 
 def test_a_kind_that_keeps_all_laws_ends_with_0(conform):
-    status, said, _ = conform("echo")
+    status, output, _ = conform("echo")
     assert status == 0
-    lines = said.splitlines()
+    lines = output.splitlines()
     assert lines[0] == "echo, four items"
     assert "  passed          outputs are copies" in lines
     assert "  does not apply  rotations are unit quaternions: it gives no rotation" in lines
@@ -70,41 +70,43 @@ def test_a_kind_that_keeps_all_laws_ends_with_0(conform):
 def test_a_broken_law_ends_with_1_and_is_told_in_a_sentence(conform, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "kept.py").write_text(KEEPS)
-    found = tmp_path / "found.json"
+    json_path = tmp_path / "found.json"
     path = _file(tmp_path, PARAMS + INPUTS)
-    status, said, _ = conform("kept:Keeps", "--params", path, "--json", found)
+    status, output, _ = conform("kept:Keeps", "--params", path, "--json", json_path)
     assert status == 1
-    assert "  failed          received arrays are neither written to nor kept: take, bind: " in said
-    assert "Keep copies: np.array(fields[key])." in said
-    table = json.loads(found.read_text())
+    assert (
+        "  failed          received arrays are neither written to nor kept: take, bind: " in output
+    )
+    assert "Keep copies: np.array(fields[key])." in output
+    table = json.loads(json_path.read_text())
     assert (table["kind"], table["conforms"]) == ("kept:Keeps", False)
     (case,) = table["cases"]
     assert case["case"] == "mass.toml"
-    assert [one["law"] for one in case["laws"]] == [name_of(law) for law in LAWS]
-    failed = [one["law"] for one in case["laws"] if one["status"] == "failed"]
+    assert [entry["law"] for entry in case["laws"]] == [name_of(law) for law in LAWS]
+    failed = [entry["law"] for entry in case["laws"] if entry["status"] == "failed"]
     assert failed == ["received arrays are neither written to nor kept"]
 
 
 def test_parameters_of_a_file_with_what_it_takes(conform, tmp_path):
     kind = "quintet.scenarios.two_springs.springs:Mass"
-    status, said, _ = conform(kind, "--params", _file(tmp_path, PARAMS + INPUTS))
-    assert status == 0 and "  passed          two half steps come to one" in said
-    status, said, _ = conform(kind, "--params", _file(tmp_path, PARAMS))
-    assert status == 0  # nothing is joined then
+    status, output, _ = conform(kind, "--params", _file(tmp_path, PARAMS + INPUTS))
+    assert status == 0 and "  passed          two half steps come to one" in output
+    status, output, _ = conform(kind, "--params", _file(tmp_path, PARAMS))
+    assert status == 0  # no port is joined then
 
 
 @pytest.mark.parametrize("name", ["lower", "upper"])
 def test_the_tutorial_conforms_as_its_scene_joins_it(conform, name):
-    status, said, _ = conform("--scene", "two_springs", "--component", name)
+    status, output, _ = conform("--scene", "two_springs", "--component", name)
     assert status == 0
-    assert said.startswith(f"springs:Mass, {name} of two_springs\n")
+    assert output.startswith(f"springs:Mass, {name} of two_springs\n")
 
 
 def test_a_scene_gives_what_partners_tell_and_where_data_lies(conform):
     settings = ["--preset", "quick"]
-    status, said, _ = conform("--scene", "floating_cube", "--component", "water", *settings)
+    status, output, _ = conform("--scene", "floating_cube", "--component", "water", *settings)
     assert status == 0
-    assert "  passed          two half steps come to one" in said
+    assert "  passed          two half steps come to one" in output
 
 
 @pytest.mark.parametrize(
@@ -147,17 +149,17 @@ def test_bad_input_ends_with_2_before_any_law_is_tried(conform, tmp_path, argume
         folder = tmp_path / name
         folder.mkdir()
         places[name] = str(_file(folder, text))
-    status, said, mistake = conform(*[one.format(**places) for one in arguments])
-    assert status == 2 and not said
+    status, output, mistake = conform(*[argument.format(**places) for argument in arguments])
+    assert status == 2 and not output
     assert words in mistake
 
 
 def test_a_third_party_runs_the_laws_from_the_installed_package(tmp_path):
-    """In a folder of its own, where nothing of the repository is at hand."""
+    """In a folder of its own, without the files of the repository."""
     (tmp_path / "own.py").write_text(Path(springs.__file__).read_text())
     _file(tmp_path, PARAMS + INPUTS)
     line = [sys.executable, "-m", "quintet.coupler.cli", "conform", "own:Mass"]
-    done = subprocess.run(
+    result = subprocess.run(
         [*line, "--params", "mass.toml"],
         cwd=tmp_path,
         env={**os.environ, "PYTHONSAFEPATH": "1"},
@@ -165,5 +167,5 @@ def test_a_third_party_runs_the_laws_from_the_installed_package(tmp_path):
         text=True,
         timeout=120,
     )
-    assert done.returncode == 0, done.stdout + done.stderr
-    assert "own:Mass conforms" in done.stdout
+    assert result.returncode == 0, result.stdout + result.stderr
+    assert "own:Mass conforms" in result.stdout

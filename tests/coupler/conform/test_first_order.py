@@ -14,7 +14,7 @@ LAW = name_of(time_steps.two_half_steps_come_to_one)
 
 
 class EulerSpring(Component):
-    """A mass on a spring by the explicit Euler method; it gives the force on what holds it."""
+    """A mass on a spring by the explicit Euler method; it gives the force on its mount."""
 
     takes = (Port("push", (FORCE,)),)
     gives = (Port("motion", (POSITION, VELOCITY)), Port("pull", (FORCE,)))
@@ -39,8 +39,8 @@ class EulerSpring(Component):
         self.x, self.v = self.x + dt * self.v, self.v + dt * (self.push - self.force) / 1e6
 
     def give(self, wanted):
-        given = {"motion.position": self.x, "motion.velocity": self.v, "pull.force": self.force}
-        return {key: given[key].copy() for key in wanted}
+        fields = {"motion.position": self.x, "motion.velocity": self.v, "pull.force": self.force}
+        return {key: fields[key].copy() for key in wanted}
 
     def save(self):
         return {"state": np.array([self.x, self.v, self.force, self.push])}
@@ -57,5 +57,5 @@ class EulerSpring(Component):
 def test_explicit_euler_passes_where_impulses_are_large(tmp_path):
     manifest = manifest_of(EulerSpring, f"{__name__}:EulerSpring")
     (case,) = EulerSpring.conform_cases()
-    found = [finding for _, finding in try_all(Trial(manifest, case, tmp_path)) if finding]
-    assert next(one.status for one in found if one.law == LAW) == "passed"
+    findings = [finding for _, finding in try_all(Trial(manifest, case, tmp_path)) if finding]
+    assert next(finding.status for finding in findings if finding.law == LAW) == "passed"

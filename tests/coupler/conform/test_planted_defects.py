@@ -1,4 +1,4 @@
-"""A planted defect is found by the law that it breaks, and none is found where none is."""
+"""The broken law finds each planted defect, and a sound component has no finding."""
 
 import pytest
 import toy_defects  # noqa: F401  (it plants)
@@ -22,14 +22,20 @@ def findings(cls, folder):
 
 
 def test_a_sound_component_breaks_no_law_and_every_law_applies_to_it(tmp_path):
-    found = list(findings(Sound, tmp_path))
-    assert [one for one in found if one.status == "failed"] == []
-    assert {one.law for one in found if one.status == "passed"} == {name_of(law) for law in LAWS}
+    results = list(findings(Sound, tmp_path))
+    assert [finding for finding in results if finding.status == "failed"] == []
+    assert {finding.law for finding in results if finding.status == "passed"} == {
+        name_of(law) for law in LAWS
+    }
 
 
 @pytest.mark.parametrize("cls", PLANTED, ids=lambda cls: cls.__name__)
 def test_a_defect_breaks_the_law_that_it_should(cls, tmp_path):
-    failed = {one.law: one.said for one in findings(cls, tmp_path) if one.status == "failed"}
+    failed = {
+        finding.law: finding.said
+        for finding in findings(cls, tmp_path)
+        if finding.status == "failed"
+    }
     assert name_of(PLANTED[cls]) in failed
 
 

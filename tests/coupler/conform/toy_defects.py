@@ -1,4 +1,4 @@
-"""Toys that break one law each: of what a component says of itself, takes and gives."""
+"""Toys that break one law each: laws of declarations, inputs and outputs."""
 
 from dataclasses import replace
 
@@ -157,16 +157,16 @@ class GiveChangesItsState(Sound):
 @breaks(outputs.the_number_of_items_never_changes)
 class TheDeadAreLeftOut(Sound):
     def outputs(self):
-        lives = self.active == 1.0
-        found = super().outputs()
-        return {k: a[lives] if k.startswith("flight") else a for k, a in found.items()}
+        alive = self.active == 1.0
+        fields = super().outputs()
+        return {k: a[alive] if k.startswith("flight") else a for k, a in fields.items()}
 
 
 @breaks(outputs.outputs_are_copies)
 class OutputsAreViews(Sound):
     def give(self, wanted):
-        given = self.outputs()
-        return {key: given[key][:] for key in wanted}
+        fields = self.outputs()
+        return {key: fields[key][:] for key in wanted}
 
 
 @breaks(outputs.outputs_are_copies)
@@ -195,8 +195,8 @@ class VelocityIsDoubled(Sound):
 @breaks(outputs.values_follow_their_rates)
 class TurnsTheOtherWay(Sound):
     def outputs(self):
-        found = super().outputs()
-        return {**found, "flight.orientation": rotation.conjugate(found["flight.orientation"])}
+        fields = super().outputs()
+        return {**fields, "flight.orientation": rotation.conjugate(fields["flight.orientation"])}
 
 
 @breaks(outputs.rotations_are_unit_quaternions)
@@ -204,6 +204,6 @@ class RotationIsNotNormalised(Sound):
     def step(self, dt):
         zero = np.zeros((len(self.q), 1))
         turn = rotation.product(np.concatenate([zero, self.spin], axis=1), self.q)
-        before = self.q
+        old_rotation = self.q
         super().step(dt)
-        self.q = before + 0.5 * dt * turn
+        self.q = old_rotation + 0.5 * dt * turn

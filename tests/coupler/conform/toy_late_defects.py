@@ -1,4 +1,4 @@
-"""Toys that break one law each: of inactive items, steps, state and accounts."""
+"""Toys that break one law each: laws of inactive items, steps, state and accounts."""
 
 from typing import ClassVar
 
@@ -33,9 +33,9 @@ class PushesWhatIsInactive(Sound):
 @breaks(activity.inputs_of_inactive_items_change_nothing)
 class TheDeadFeelTheirLoad(Sound):
     def step(self, dt):
-        kept, self.active = self.active, np.ones_like(self.active)
+        active, self.active = self.active, np.ones_like(self.active)
         super().step(dt)
-        self.active = self.active * kept
+        self.active = self.active * active
 
 
 @breaks(time_steps.the_stable_step_is_positive)
@@ -135,9 +135,9 @@ class SavesAnObject(Sound):
 @breaks(state.what_is_saved_does_not_change_afterwards)
 class SavesItsOwnArrays(Sound):
     def step(self, dt):
-        before, x = self.x, self.x
+        old_position, x = self.x, self.x
         super().step(dt)
-        before[...], self.x = self.x, x
+        old_position[...], self.x = self.x, x
 
     def save(self):
         return {key: getattr(self, key) for key in STATE}
@@ -205,9 +205,9 @@ class MissesMass(Sound):
 @breaks(accounts.momentum_changes_by_the_impulses)
 class FeelsNoReaction(Sound):
     def step(self, dt):
-        before = self.drags().sum(axis=0)
+        drag = self.drags().sum(axis=0)
         super().step(dt)
-        self.v[0] += dt * before / self.params.mass
+        self.v[0] += dt * drag / self.params.mass
 
 
 @breaks(accounts.views_are_pictures)

@@ -1,4 +1,4 @@
-"""Toy that every law of the contract applies to: bodies that are dragged by samples around them."""
+"""Toy to which every law of the contract applies: bodies that samples around them drag."""
 
 import numpy as np
 
@@ -43,7 +43,7 @@ ACTIVITY = {"cloud.active": ("cloud_load",), "flight.active": ("load",)}
 
 
 class Sound(Component):
-    """Bodies in free flight; the first is dragged by a cloud, and those too fast are inactive."""
+    """Bodies in free flight; a cloud drags the first body, and too fast bodies are inactive."""
 
     takes: tuple[Port, ...] = (LOAD, CLOUD)
     gives: tuple[Port, ...] = (FLIGHT, CLOUD_LOAD)
@@ -116,7 +116,7 @@ class Sound(Component):
         return self.params.noise * random.normal(size=self.x.shape)
 
     def outputs(self) -> dict[str, Array]:
-        """All that it can give."""
+        """All fields that it can give."""
         return {
             "flight.position": self.x,
             "flight.velocity": self.v,
@@ -127,8 +127,8 @@ class Sound(Component):
         }
 
     def give(self, wanted: Keys) -> Fields:
-        given = self.outputs()
-        return {key: given[key].copy() for key in wanted}
+        fields = self.outputs()
+        return {key: fields[key].copy() for key in wanted}
 
     def save(self) -> Fields:
         return {key: getattr(self, key).copy() for key in STATE}
@@ -151,12 +151,12 @@ class Sound(Component):
     @staticmethod
     def conform_cases() -> tuple[ConformCase, ...]:
         """At rest; spinning; with a body that is too fast, and noise."""
-        none = np.zeros((2, 3))
-        fed = {
+        zero_load = np.zeros((2, 3))
+        inputs = {
             "static": {"cloud.volume": np.array([0.5, 0.3, 0.2])},
             "rest": {
-                "load.force": none,
-                "load.torque": none,
+                "load.force": zero_load,
+                "load.torque": zero_load,
                 "cloud.position": np.zeros((3, 3)),
                 "cloud.velocity": np.zeros((3, 3)),
                 "cloud.active": np.ones(3),
@@ -168,7 +168,7 @@ class Sound(Component):
         spins = {"spins": [[5.0, 0.0, 1.0], [0.0, -3.0, 2.0]]}
         fast = {"velocities": [[1.0, 0.0, 0.0], [0.0, 9.0, 0.0]], "fastest": 8.0, "noise": 0.1}
         return (
-            ConformCase("at rest", {}, forces=forces, **fed),
-            ConformCase("spinning", spins, still=False, **fed),
-            ConformCase("too fast", fast, still=False, smooth=False, **fed),
+            ConformCase("at rest", {}, forces=forces, **inputs),
+            ConformCase("spinning", spins, still=False, **inputs),
+            ConformCase("too fast", fast, still=False, smooth=False, **inputs),
         )
