@@ -24,8 +24,8 @@ def _refused(widths, largest):
 
 
 def test_items_larger_than_the_taker_can_take_are_refused():
-    (said,) = _refused([0.1, 0.3, 0.2], 0.25)
-    assert said == (
+    (message,) = _refused([0.1, 0.3, 0.2], 0.25)
+    assert message == (
         "link rope: a.grains.width must be at most 0.25 m, as b.grains.largest_width requests; "
         "found 0.3 m of item 1. Correct a or b."
     )

@@ -1,4 +1,4 @@
-"""How what several links bring meets at one port, and is parted again."""
+"""Fields of several links are merged at one port, and split again."""
 
 import numpy as np
 import pytest
@@ -37,23 +37,26 @@ def _at_rest(count, x):
     }
 
 
-def _inputs(exchange, taker, outputs, ahead=()):
-    """What all links bring to a component; `ahead` have done the window already."""
-    numbers = [n for n, one in enumerate(exchange.transfers) if one.taker == taker]
-    brought = [exchange.deliver(number, outputs, outputs) for number in numbers]
-    return exchange.merge(taker, [(one, one.transfer.giver in ahead) for one in brought])
+def _inputs(exchange, taker, outputs, finished=()):
+    """Fields that all links bring to a component; `finished` have done the window already."""
+    transfers = exchange.transfers
+    numbers = [n for n, transfer in enumerate(transfers) if transfer.taker == taker]
+    deliveries = [exchange.deliver(number, outputs, outputs) for number in numbers]
+    return exchange.merge(
+        taker, [(delivery, delivery.transfer.giver in finished) for delivery in deliveries]
+    )
 
 
 @pytest.fixture(params=[("water", "small", "large"), ("small", "large", "water")])
 def two_links(request):
     """Two components of bodies in one fluid; ports in the order in which they step."""
-    known = {"water": FLUID, "small": BODY, "large": BODY}
-    ports = {name: known[name] for name in request.param}
+    kinds = {"water": FLUID, "small": BODY, "large": BODY}
+    ports = {name: kinds[name] for name in request.param}
     links = [join_fsi(name, ("water", name), ports) for name in ("small", "large")]
     exchange = Exchange(links, ports)
-    described = {"water": STATED, "small": masses(2), "large": masses(1)}
+    descriptions = {"water": STATED, "small": masses(2), "large": masses(1)}
     answers = {"small": cubes(0.2, 2), "large": cubes(0.3)}
-    static = exchange.bind(described, lambda name, request: answers[name](request))
+    static = exchange.bind(descriptions, lambda name, request: answers[name](request))
     outputs = {
         "water": {"surface_load.force": np.zeros((16 + 27, 3))},
         "small": _at_rest(2, 1.0),
@@ -66,8 +69,8 @@ def two_links(request):
 def test_rows_of_several_links_stand_one_after_another(two_links):
     exchange, static, outputs = two_links
     assert static["water"]["surface.volume"].shape == (16 + 27,)
-    carried = _inputs(exchange, "water", outputs)
-    velocity = carried.fields["surface.velocity"]
+    inputs = _inputs(exchange, "water", outputs)
+    velocity = inputs.fields["surface.velocity"]
     np.testing.assert_array_equal(velocity[:16], 1.0)
     np.testing.assert_array_equal(velocity[16:], 5.0)
 
@@ -76,7 +79,7 @@ def test_forces_go_back_to_whom_they_belong(two_links):
     exchange, _, outputs = two_links
     force = np.arange(43.0)[:, None] * np.ones(3)
     outputs["water"]["surface_load.force"] = force
-    # Whoever is asked first.
+    # For any component that is asked first.
     for _ in range(2):
         small = _inputs(exchange, "small", outputs).fields["load.force"]
         large = _inputs(exchange, "large", outputs).fields["load.force"]
@@ -154,14 +157,14 @@ def test_values_of_several_links_cannot_be_added():
 
 
 def test_ports_that_do_not_fit_are_named():
-    odd = Port("load", (Field("force", (3,), "N"), Field("torque", (3,), "N", "impulse")))
-    wrong = misfits("cubes", odd, LOAD)
-    assert "cubes.load.force is instant, the other side's impulse" in wrong
-    assert "cubes.load.torque is in N, the other side's in N m" in wrong
+    port = Port("load", (Field("force", (3,), "N"), Field("torque", (3,), "N", "impulse")))
+    messages = misfits("cubes", port, LOAD)
+    assert "cubes.load.force is instant, the other side's impulse" in messages
+    assert "cubes.load.torque is in N, the other side's in N m" in messages
     scalar = Port("load", (Field("force", (), "N", "impulse"), Field("moment", (3,), "N m")))
-    wrong = misfits("cubes", scalar, LOAD)
-    assert "cubes.load.force has shape (), the other side's (3,)" in wrong
-    assert "cubes.load.moment is not known to the other side (force, torque)" in wrong
+    messages = misfits("cubes", scalar, LOAD)
+    assert "cubes.load.force has shape (), the other side's (3,)" in messages
+    assert "cubes.load.moment is not known to the other side (force, torque)" in messages
     assert requires(BODY, "cubes", LOAD, MOTION) == []
     assert requires(BODY, "cubes", SURFACE, None) == ["cubes must take a port surface"]
 
@@ -173,8 +176,8 @@ def test_two_plates_in_one_fluid_get_their_own_forces_from_the_start(first):
     exchange = Exchange([join_fsi(n, ("water", n), ports) for n in ("left", "right")], ports)
     square = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0.0]])
     faces = {"faces.start": square, "faces.corner": np.array([[0.0, 1.0, 2.0, 3.0]])}
-    asked = {"surface.spacing": np.ones(1), "surface.inset": np.zeros(1)}
-    described = {"left": faces, "right": faces, "water": STATED | asked}
+    requests = {"surface.spacing": np.ones(1), "surface.inset": np.zeros(1)}
+    described = {"left": faces, "right": faces, "water": STATED | requests}
     exchange.bind(described, lambda _, request: mesh(faces)(request))
     moving = {"faces.position": square, "faces.velocity": square}
     force = {"surface_load.force": np.array([[4.0, 0.0, 0.0], [0.0, 8.0, 0.0]])}
@@ -182,5 +185,5 @@ def test_two_plates_in_one_fluid_get_their_own_forces_from_the_start(first):
     exchange.count_rows(outputs)
     for name in dict.fromkeys([first, "left", "right"]):
         load = _inputs(exchange, name, outputs).fields["node_load.force"]
-        own = [1.0, 0.0, 0.0] if name == "left" else [0.0, 2.0, 0.0]
-        np.testing.assert_allclose(load, np.tile(own, (4, 1)), rtol=1e-14)
+        expected = [1.0, 0.0, 0.0] if name == "left" else [0.0, 2.0, 0.0]
+        np.testing.assert_allclose(load, np.tile(expected, (4, 1)), rtol=1e-14)

@@ -41,20 +41,20 @@ def test_a_difference_is_booked_under_its_unit_and_the_worst_one_stays():
 
 def test_all_that_was_given_is_applied_or_on_its_way():
     ledger = Ledger(_exchange())
-    back = 1  # number of the transfer that brings the force
-    late = {back}
+    transfer = 1  # number of the transfer that brings the force
+    late_transfers = {transfer}
     force = np.array([[1.0, 2.0, 3.0], [-4.0, 0.0, 1.0]])
     sums = {"pushed.force": force.sum(axis=0).tolist()}
     header = {"sent": {**sums, "pushed.force/size": [np.abs(force).sum()]}}
     fields = {"pushed.force": force}
     ledger.book_given("b", header, fields)
-    ledger.given_for(back, fields)
-    ledger.close_window(late, {})
+    ledger.given_for(transfer, fields)
+    ledger.close_window(late_transfers, {})
     assert ledger.worst == 0.0
     ledger.book_given("b", header, fields)
-    ledger.given_for(back, fields)
+    ledger.given_for(transfer, fields)
     ledger.applied("a", fields, {"received": sums, "applied": sums})
-    ledger.close_window(late, {})
+    ledger.close_window(late_transfers, {})
     assert ledger.worst == 0.0
     in_transit = {("a", "pushed.force"): force}
     ledger.close_window((), in_transit)
@@ -64,34 +64,34 @@ def test_all_that_was_given_is_applied_or_on_its_way():
 
 
 def test_a_hermite_path_is_found_anew_from_its_sums():
-    """What the serving loop hands out of a cubic path is what the ledger works out for itself."""
+    """The serving loop and the ledger compute the same sums of a cubic path."""
     random, window = np.random.default_rng(1), 0.7
     inputs = Inputs([MOVED])
-    handed = InputAudit(["moved.position"], {"moved.position": "moved.velocity"})
+    audit = InputAudit(["moved.position"], {"moved.position": "moved.velocity"})
     motion = MotionAudit(_exchange())
     for number in range(4):
         fields = {f"moved.{key}": random.normal(size=(5, 3)) for key in ("position", "velocity")}
         ends = list(fields) if number else []
         inputs.arrive(fields, ends, window)
         motion.arrive("b", fields, ends, window)
-        handed.begin()
+        audit.begin()
         marks = np.linspace(0.0, window, 8)
         for begin, end in pairwise(marks):
-            handed.add(inputs.over(begin, end, window), end - begin)
-        assert motion.residual("b", handed.audit()) < 1e-14
-        wrong = handed.audit()
-        wrong["first"] = {key: np.add(v, 1e-6) for key, v in wrong["first"].items()}
-        assert motion.residual("b", wrong) > 1e-9
+            audit.add(inputs.over(begin, end, window), end - begin)
+        assert motion.residual("b", audit.audit()) < 1e-14
+        wrong_audit = audit.audit()
+        wrong_audit["first"] = {key: np.add(v, 1e-6) for key, v in wrong_audit["first"].items()}
+        assert motion.residual("b", wrong_audit) > 1e-9
 
 
 def test_mean_rates_are_those_of_the_displacement_where_it_is_known():
     x, v = "moved.position", "moved.velocity"
-    before = {x: np.zeros((1, 3)), v: np.ones((1, 3))}
-    after = {x: np.full((1, 3), 4.0), v: np.full((1, 3), 5.0)}
+    start = {x: np.zeros((1, 3)), v: np.ones((1, 3))}
+    end = {x: np.full((1, 3), 4.0), v: np.full((1, 3), 5.0)}
     ledger = Ledger(_exchange())
     for place, mean in ((x, 2.0), ("", 3.0), ("integral", 2.5)):
-        found = ledger._mean_rate("a", before, after, (v, place), 2.0)
-        np.testing.assert_array_equal(found, mean)
+        rate = ledger._mean_rate("a", start, end, (v, place), 2.0)
+        np.testing.assert_array_equal(rate, mean)
 
 
 def test_work_that_only_one_side_counts_is_no_residual():
@@ -111,10 +111,10 @@ def test_work_that_only_one_side_counts_is_no_residual():
 
 def test_every_note_writes_a_row_for_each_link_and_component(tmp_path):
     ledger = Ledger(_exchange(), tmp_path / "ledger.csv")
-    one = {"mass": 1.0, "momentum": [0.0] * 3, "kinetic": 2.0, "potential": 0.0, "internal": 1.0}
-    one["work"] = 0.0
+    totals = {"mass": 1.0, "momentum": [0.0] * 3, "kinetic": 2.0, "potential": 0.0, "internal": 1.0}
+    totals["work"] = 0.0
     for time, kinetic in ((0.0, 2.0), (0.5, 1.0), (1.0, 2.5)):
-        ledger.note(time, {"a": {**one, "kinetic": kinetic}, "b": one})
+        ledger.note(time, {"a": {**totals, "kinetic": kinetic}, "b": totals})
     ledger.close()
     with open(tmp_path / "ledger.csv", newline="") as file:
         rows = list(csv.reader(file))
@@ -127,36 +127,36 @@ def test_every_note_writes_a_row_for_each_link_and_component(tmp_path):
 
 
 def test_a_mass_balance_that_a_component_keeps_is_told_and_saved(tmp_path):
-    ledger, other = (Ledger(_exchange(), tmp_path / f"{name}.csv") for name in ("one", "other"))
+    ledger, restored = (Ledger(_exchange(), tmp_path / f"{name}.csv") for name in ("one", "other"))
     sums = {"mass": 3.0, "momentum": [0.0] * 3, "kinetic": 0.0, "potential": 0.0, "internal": 0.0}
     sums |= {"work": 0.0, "mass_balance": {"at the start": 2.0, "entered": 1.5}}
     ledger.note(0.0, {"a": sums, "b": {**sums, "mass_balance": {}}})
-    other.load(ledger.save())
-    for each in (ledger, other):
-        balances = each.summary()["mass_balance"]
+    restored.load(ledger.save())
+    for book in (ledger, restored):
+        balances = book.summary()["mass_balance"]
         assert balances.keys() == {"a"}
         assert balances["a"]["kg"] == {"at the start": 2.0, "entered": 1.5}
         assert (balances["a"]["now"], balances["a"]["residual"]) == (3.0, pytest.approx(0.5 / 3.5))
-        each.close()
+        book.close()
 
 
-def _totals(kinetic, potential=0.0, work=0.0, mass=0.0, **more):
+def _totals(kinetic, potential=0.0, work=0.0, mass=0.0, **terms):
     energies = {"kinetic": kinetic, "potential": potential, "internal": 0.0}
-    return {"a": {**energies, "work": work, "mass": mass, **more}}
+    return {"a": {**energies, "work": work, "mass": mass, **terms}}
 
 
 def _restored(balance):
-    """The balance, and what a snapshot makes of it."""
-    kept = EnergyBalance()
-    kept.load(json.loads(json.dumps(balance.save())))
-    return balance, kept
+    """The balance, and its copy from a snapshot."""
+    restored = EnergyBalance()
+    restored.load(json.loads(json.dumps(balance.save())))
+    return balance, restored
 
 
 def _close(part):
     """Whether the parts of a balance add up to the change."""
-    come = part["outside"] + part["links"] + part["heat"]
-    left = part["lost"] - (part["unexplained"] or 0.0)
-    assert part["change"] == pytest.approx(come - left, abs=1e-12)
+    inflow = part["outside"] + part["links"] + part["heat"]
+    outflow = part["lost"] - (part["unexplained"] or 0.0)
+    assert part["change"] == pytest.approx(inflow - outflow, abs=1e-12)
 
 
 def test_what_is_done_from_outside_is_no_rise_of_energy():
@@ -173,10 +173,10 @@ def test_what_is_done_from_outside_is_no_rise_of_energy():
 @pytest.mark.parametrize(
     ("energies", "gained"),
     [
-        # A body that falls turns its potential energy into motion; what rises is the error alone.
+        # A falling body turns its potential energy into motion; only the error rises.
         ([(0.0, 5.0), (3.0, 2.0), (4.9, 0.10005)], 5e-5),
         ([(0.0, 5.0), (3.0, 1.0), (0.0, 0.5)], 0.0),
-        # At rest but for rounding, nothing is turned over that a rise could be told against.
+        # At rest except for rounding, no energy is converted to which a rise could be compared.
         ([(0.0, 26.5), (0.0, 26.500000004)], None),
         ([(0.0, 0.0), (0.0, 0.0)], None),
     ],
@@ -185,8 +185,8 @@ def test_a_rise_of_energy_is_told_where_more_than_rounding_was_turned_over(energ
     balance = EnergyBalance()
     for kinetic, potential in energies:
         balance.note(_totals(kinetic, potential))
-    for one in _restored(balance):
-        summary = one.summary()
+    for energy_balance in _restored(balance):
+        summary = energy_balance.summary()
         if gained is None:
             assert summary is None
         else:
@@ -197,13 +197,13 @@ def test_what_is_missing_at_the_end_is_lost_where_a_component_reports_no_dissipa
     balance = EnergyBalance()
     for kinetic in (10.0, 10.3, 5.0, 9.4):
         balance.note(_totals(kinetic))
-    for one in _restored(balance):
-        part = one.summary()["components"]["a"]
+    for energy_balance in _restored(balance):
+        part = energy_balance.summary()["components"]["a"]
         assert (part["lost"], part["gained"]) == pytest.approx((0.6, 0.3))
         assert part["unexplained"] is None, "all of it may be dissipated"
         _close(part)
-        one.note(_totals(10.2))
-        part = one.summary()["components"]["a"]
+        energy_balance.note(_totals(10.2))
+        part = energy_balance.summary()["components"]["a"]
         assert (part["lost"], part["unexplained"]) == pytest.approx((0.0, 0.2))
 
 
@@ -217,7 +217,7 @@ def test_what_a_component_reports_as_dissipated_is_not_unexplained():
 
 
 def test_a_steady_flow_of_heat_closes_and_is_told_against_the_heat_that_flowed():
-    """One part stores nothing: what comes in goes on to the other, which hands it to a bath."""
+    """One part stores nothing: its heat flows on to the other part, and from there to a bath."""
     balance = EnergyBalance()
     still = {"kinetic": 0.0, "potential": 0.0, "internal": 0.0, "mass": 0.0, "dissipated": 0.0}
     for heat in (0.0, 50.0, 100.0):
@@ -242,13 +242,13 @@ def test_work_that_the_sides_of_a_link_count_differently_is_made_by_the_coupling
     balance.add_work("rope", "a", -4.0)
     balance.add_work("rope", "b", 4.5)
     balance.note({"a": {**rest, "kinetic": 6.0}, "b": {**rest, "kinetic": 4.5}})
-    for one in _restored(balance):
-        run = one.summary()["run"]
+    for energy_balance in _restored(balance):
+        run = energy_balance.summary()["run"]
         assert (run["coupling"], run["unexplained"], run["gained"], run["links"]) == (
             0.5, 0.5, 0.5, 0.0
         )  # fmt: skip
         _close(run)
-        parts = one.summary()["components"]
+        parts = energy_balance.summary()["components"]
         assert [part["unexplained"] for part in parts.values()] == [0.0, 0.0]
 
 
@@ -270,10 +270,10 @@ def test_a_change_of_mass_is_told_over_the_mass_at_the_start():
     balance = EnergyBalance()
     for mass in (200.0, 150.0, 198.0):
         balance.note(_totals(1.0, 0.0, mass=mass))
-    kept = EnergyBalance()
-    kept.load(balance.save())
-    for one in (balance, kept):
-        assert one.mass_drift() == {"a": {"kg": -2.0, "relative": -0.01}}
+    restored = EnergyBalance()
+    restored.load(balance.save())
+    for energy_balance in (balance, restored):
+        assert energy_balance.mass_drift() == {"a": {"kg": -2.0, "relative": -0.01}}
 
 
 def test_a_mass_that_was_none_at_the_start_has_no_relative_change_and_none_is_left_out():

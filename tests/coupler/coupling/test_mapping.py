@@ -34,15 +34,15 @@ def _triangles():
 
 def _sampled(position, face, spacing):
     """Samples on the faces themselves: their map, areas and normals."""
-    found = sample_faces(position, face, Sampling(spacing, spacing, inset=0.0, planar=False))
-    shape = ShapeMap(found.node, found.weight, len(position))
-    return shape, found.volume / spacing, found.normal
+    samples = sample_faces(position, face, Sampling(spacing, spacing, inset=0.0, planar=False))
+    shape = ShapeMap(samples.node, samples.weight, len(position))
+    return shape, samples.volume / spacing, samples.normal
 
 
 def _hung(points, position, face):
     """Map of points that hang on faces."""
-    found = project(points, position, face)
-    return ShapeMap(found.node, found.weight, len(position))
+    projection = project(points, position, face)
+    return ShapeMap(projection.node, projection.weight, len(position))
 
 
 def _rigid(samples=200, bodies=4):
@@ -89,10 +89,10 @@ def test_rigid_rotation_is_exact():
     position, velocity = rigid.map_consistent(place, np.zeros((1, 3)), quaternion, spin)
     axis = spin[0] / np.linalg.norm(spin[0])
     arm = rigid.arm  # Rodrigues' formula, written out
-    turned = arm * np.cos(angle) + np.cross(axis, arm) * np.sin(angle)
-    turned += np.outer(arm @ axis, axis) * (1.0 - np.cos(angle))
-    np.testing.assert_allclose(position, place + turned, atol=1e-14)
-    np.testing.assert_allclose(velocity, np.cross(spin[0], turned), atol=1e-14)
+    rotated = arm * np.cos(angle) + np.cross(axis, arm) * np.sin(angle)
+    rotated += np.outer(arm @ axis, axis) * (1.0 - np.cos(angle))
+    np.testing.assert_allclose(position, place + rotated, atol=1e-14)
+    np.testing.assert_allclose(velocity, np.cross(spin[0], rotated), atol=1e-14)
     distance = np.linalg.norm(position - place, axis=1)
     np.testing.assert_allclose(distance, np.linalg.norm(arm, axis=1), rtol=1e-14)
 
@@ -149,8 +149,8 @@ def test_samples_keep_the_spacing():
     place = shape.map_consistent(position)
     assert len(place) == 50
     np.testing.assert_allclose(area, 0.01, rtol=1e-14)
-    apart = np.linalg.norm(place[:, None] - place[None], axis=2) + np.eye(50)
-    assert apart.min() == pytest.approx(0.1, rel=1e-12)
+    distances = np.linalg.norm(place[:, None] - place[None], axis=2) + np.eye(50)
+    assert distances.min() == pytest.approx(0.1, rel=1e-12)
 
 
 @pytest.mark.parametrize("mesh", [_mesh, _triangles])
@@ -161,8 +161,8 @@ def test_points_on_faces_are_projected_onto_themselves(mesh):
     np.testing.assert_allclose(
         _hung(place, position, face).map_consistent(position), place, atol=1e-9
     )
-    above = _hung(place + 0.02 * normal, position, face).map_consistent(position)
-    np.testing.assert_allclose(above, place, atol=1e-6)
+    projected = _hung(place + 0.02 * normal, position, face).map_consistent(position)
+    np.testing.assert_allclose(projected, place, atol=1e-6)
 
 
 def test_points_are_hung_on_the_nearest_face_however_unequal_the_faces_are():
@@ -183,11 +183,13 @@ def test_points_beyond_the_rim_hang_on_the_rim():
 
 def test_points_on_edges_and_corners_of_faces_hang_on_one_face_each():
     position, face = _mesh()
-    found = project(position, position, face)
-    np.testing.assert_allclose(at_points(found.weight, position[found.node]), position, atol=1e-12)
-    np.testing.assert_allclose(found.gap, 0.0, atol=1e-12)
-    np.testing.assert_allclose(found.beyond, 0.0, atol=1e-12)
-    assert found.face.min() == 0 and found.face.max() == len(face) - 1
+    projection = project(position, position, face)
+    np.testing.assert_allclose(
+        at_points(projection.weight, position[projection.node]), position, atol=1e-12
+    )
+    np.testing.assert_allclose(projection.gap, 0.0, atol=1e-12)
+    np.testing.assert_allclose(projection.beyond, 0.0, atol=1e-12)
+    assert projection.face.min() == 0 and projection.face.max() == len(face) - 1
 
 
 def test_projection_of_no_points_is_empty():
@@ -204,7 +206,7 @@ def test_shape_functions_are_one_at_their_corner():
 
 def test_sums_by_owner_are_those_of_the_dense_operator():
     values, owner = RANDOM.normal(size=(50, 3)), RANDOM.integers(0, 5, 50)
-    dense = (owner == np.arange(6)[:, None]).astype(float) @ values  # the last owns nothing
+    dense = (owner == np.arange(6)[:, None]).astype(float) @ values  # the last owner has no row
     np.testing.assert_allclose(sum_by(values, owner, 6), dense, atol=1e-14)
 
 

@@ -1,4 +1,4 @@
-"""Schemes: who sees what of whom, and how a repeated window comes to agreement."""
+"""Schemes: the fields that components see of each other, and how repeated windows converge."""
 
 import numpy as np
 import pytest
@@ -25,10 +25,10 @@ def _solve(slope, settings, start=0.0, limit=60):
     acceleration, x = make_acceleration(settings, _is_no_impulse), np.array([start])
     acceleration.begin_window(1.0)
     for step in range(limit):
-        found = slope * x + 1.0
-        if abs(found[0] - x[0]) < 1e-10:
+        answer = slope * x + 1.0
+        if abs(answer[0] - x[0]) < 1e-10:
             return step
-        x = acceleration.next({KEY: x}, {KEY: found}, {KEY: 1e-10})[KEY]
+        x = acceleration.next({KEY: x}, {KEY: answer}, {KEY: 1e-10})[KEY]
     return None
 
 
@@ -36,10 +36,10 @@ def _is_no_impulse(name, key):
     return False
 
 
-def _agrees(measure, gap, found):
-    """Whether fields converged that are found, and were guessed with a gap."""
-    guess = {key: found[key] - gap[key] for key in found}
-    return converged(measure.compare(guess, found, 1.0))
+def _agrees(measure, gap, fields):
+    """Whether fields converged whose guess differed by a gap."""
+    guess = {key: fields[key] - gap[key] for key in fields}
+    return converged(measure.compare(guess, fields, 1.0))
 
 
 @pytest.mark.parametrize("slope", [-3.0, -0.9, 0.5, 0.99])
@@ -65,16 +65,16 @@ def test_aitken_survives_a_residual_that_does_not_change():
 
 def test_what_is_nothing_but_rounding_need_not_agree():
     force, torque = ("cube", "load.force"), ("cube", "load.torque")
-    found = {force: np.array([0.07]), torque: np.array([2e-18])}
+    fields = {force: np.array([0.07]), torque: np.array([2e-18])}
     measure = ConvergenceMeasure(IterationSettings().tolerance, {}, _is_no_impulse)
-    assert _agrees(measure, {force: np.array([1e-9]), torque: np.array([1e-18])}, found)
-    assert not _agrees(measure, {force: np.array([1e-6]), torque: np.array([1e-18])}, found)
-    found[torque] = np.array([2e-4])
-    assert not _agrees(measure, {force: np.array([1e-9]), torque: np.array([1e-6])}, found)
+    assert _agrees(measure, {force: np.array([1e-9]), torque: np.array([1e-18])}, fields)
+    assert not _agrees(measure, {force: np.array([1e-6]), torque: np.array([1e-18])}, fields)
+    fields[torque] = np.array([2e-4])
+    assert not _agrees(measure, {force: np.array([1e-9]), torque: np.array([1e-6])}, fields)
 
 
 class _Stub:
-    """A participant that gives what it is to answer in each window; nothing runs."""
+    """A participant that gives prepared answers in each window; nothing runs."""
 
     stable = 1.0  # s
 
@@ -114,15 +114,15 @@ def _coupling(pairs, scheme, names="abc"):
     exchange.bind({name: {} for name in names})
     stubs = {name: _Stub(name, [1.0 + n, 11.0 + n]) for n, name in enumerate(names)}
     members = {name: Single(stub) for name, stub in stubs.items()}
-    one = CouplingPlan("", dict.fromkeys(names), scheme)
-    coupling = Coupling(one, members, exchange, Ledger(exchange))
+    plan = CouplingPlan("", dict.fromkeys(names), scheme)
+    coupling = Coupling(plan, members, exchange, Ledger(exchange))
     coupling.outputs = {name: {"out.value": np.zeros(1)} for name in names}
     coupling.previous, coupling.sent = dict(coupling.outputs), {name: {} for name in names}
     exchange.count_rows(coupling.outputs)
     for name in names:
         numbers = [n for n, transfer in enumerate(exchange.transfers) if transfer.taker == name]
-        told = [exchange.deliver(n, coupling.outputs, coupling.outputs) for n in numbers]
-        fields = exchange.merge(name, [(delivery, False) for delivery in told]).fields
+        deliveries = [exchange.deliver(n, coupling.outputs, coupling.outputs) for n in numbers]
+        fields = exchange.merge(name, [(delivery, False) for delivery in deliveries]).fields
         coupling.ledger.primed(name, fields)
     return coupling
 
@@ -140,26 +140,26 @@ def test_serial_sees_the_end_of_those_before_and_the_start_of_those_after():
     coupling = _coupling([("a", "b"), ("b", "c"), ("c", "a")], "serial")
     _step(coupling, 2)
     a, b, c = _logs(coupling)
-    assert [one["in.value"] for one in a] == [(0.0, False), (3.0, False)]
-    assert [one["in.value"] for one in b] == [(1.0, True), (11.0, True)]
-    assert [one["in.value"] for one in c] == [(2.0, True), (12.0, True)]
+    assert [inputs["in.value"] for inputs in a] == [(0.0, False), (3.0, False)]
+    assert [inputs["in.value"] for inputs in b] == [(1.0, True), (11.0, True)]
+    assert [inputs["in.value"] for inputs in c] == [(2.0, True), (12.0, True)]
 
 
 def test_parallel_sees_the_start_of_all():
     coupling = _coupling([("a", "b"), ("b", "c"), ("c", "a")], "parallel")
     _step(coupling, 2)
     a, b, c = _logs(coupling)
-    assert [one["in.value"] for one in a] == [(0.0, False), (3.0, False)]
-    assert [one["in.value"] for one in b] == [(0.0, False), (1.0, False)]
-    assert [one["in.value"] for one in c] == [(0.0, False), (2.0, False)]
+    assert [inputs["in.value"] for inputs in a] == [(0.0, False), (3.0, False)]
+    assert [inputs["in.value"] for inputs in b] == [(0.0, False), (1.0, False)]
+    assert [inputs["in.value"] for inputs in c] == [(0.0, False), (2.0, False)]
 
 
 def test_iterated_sees_the_end_of_all():
     coupling = _coupling([("a", "b"), ("b", "c"), ("c", "a")], "iterated")
     _step(coupling)
-    last = [log[-1]["in.value"] for log in _logs(coupling)]
-    assert last == [(3.0, True), (1.0, True), (2.0, True)]
-    # It guessed nought, went half the way, and found by Aitken's factor what was lacking.
+    last_inputs = [log[-1]["in.value"] for log in _logs(coupling)]
+    assert last_inputs == [(3.0, True), (1.0, True), (2.0, True)]
+    # The guess was zero, the first step went half the way, and Aitken's factor gave the rest.
     assert coupling.costs.repetitions == 2
 
 

@@ -22,21 +22,21 @@ GIVES = {
 
 def check_of(ways, late=LOADED, windows=0.1, load=LOAD):
     """A check that has seen windows [s] of a run, with ways [m] in each."""
-    check, at = StartCheck(), np.zeros((5, 3))
-    given = {"load.force": load, "load.place": np.ones((5, 3))}
-    for done, (way, window) in enumerate(np.broadcast(ways, windows), 1):
+    check, position = StartCheck(), np.zeros((5, 3))
+    fields = {"load.force": load, "load.place": np.ones((5, 3))}
+    for number, (way, window) in enumerate(np.broadcast(ways, windows), 1):
         check.check(
             SimpleNamespace(
-                windows=SimpleNamespace(done=done),
+                windows=SimpleNamespace(done=number),
                 last_dt=window,
-                previous={"plate": {"faces.position": at}, "water": given},
-                outputs={"plate": {"faces.position": at + way}, "water": given},
+                previous={"plate": {"faces.position": position}, "water": fields},
+                outputs={"plate": {"faces.position": position + way}, "water": fields},
                 exchange=SimpleNamespace(transfers=TRANSFERS, gives=GIVES),
                 late=late,
             ),
-            [KEY] if done <= 2 else (),
+            [KEY] if number <= 2 else (),
         )
-        at = at + way
+        position = position + way
         saved, check = check.save(), StartCheck()
         check.load(saved)
     return check

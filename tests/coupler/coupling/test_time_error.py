@@ -10,7 +10,7 @@ KEY = ("body", "motion.position")
 
 
 def estimated(error, window=0.01, windows=64, period=1.0, scatter=0.0, seed=1):
-    """Of an oscillation whose change in each window is wrong by a share, with noise."""
+    """Errors of an oscillation whose change in each window is wrong by a share, with noise."""
     errors, random = TimeErrors(), np.random.default_rng(seed)
     for number in filter(is_sampled, range(1, windows + 1)):
         ends = np.array([number - 1, number]) * window
@@ -21,21 +21,21 @@ def estimated(error, window=0.01, windows=64, period=1.0, scatter=0.0, seed=1):
 
 
 def test_an_error_of_every_window_is_found_whole():
-    found = estimated(0.04).fields[KEY]
-    assert found.local == pytest.approx(0.04)
-    assert found.bias == pytest.approx(0.04)
+    estimate = estimated(0.04).fields[KEY]
+    assert estimate.local == pytest.approx(0.04)
+    assert estimate.bias == pytest.approx(0.04)
 
 
 def test_the_error_of_a_motion_to_and_fro_adds_up_over_its_way():
-    short, long = (estimated(0.01, windows=one).fields[KEY].drift for one in (100, 4096))
+    short, long = (estimated(0.01, windows=count).fields[KEY].drift for count in (100, 4096))
     assert short < 0.05
     assert long > 0.3
 
 
 def test_noise_adds_up_to_nothing():
-    found = [estimated(0.0, windows=4096, scatter=0.01, seed=n).fields[KEY] for n in range(20)]
-    assert sum(one.bias == 0.0 for one in found) >= 18
-    assert all(one.local > 0.05 for one in found)
+    estimates = [estimated(0.0, windows=4096, scatter=0.01, seed=n).fields[KEY] for n in range(20)]
+    assert sum(estimate.bias == 0.0 for estimate in estimates) >= 18
+    assert all(estimate.local > 0.05 for estimate in estimates)
 
 
 def test_what_does_not_move_is_not_judged():
@@ -49,16 +49,16 @@ def test_what_does_not_move_is_not_judged():
 
 def test_a_quaternion_and_its_negative_are_the_same():
     start, end = np.array([[1.0, 0.0, 0.0, 0.0]]), np.array([[0.8, 0.6, 0.0, 0.0]])
-    found = sample(end, -end, -start, "rotation")
-    assert found.difference == 0.0
-    assert found.change == pytest.approx(np.sqrt(0.4))
+    error_sample = sample(end, -end, -start, "rotation")
+    assert error_sample.difference == 0.0
+    assert error_sample.change == pytest.approx(np.sqrt(0.4))
 
 
 def test_estimates_come_back_from_a_snapshot():
-    errors, again = estimated(0.04, windows=8), TimeErrors()
-    again.load(errors.save())
-    assert again.summary() == errors.summary()
-    assert again.save()["window"] == 8
+    errors, restored = estimated(0.04, windows=8), TimeErrors()
+    restored.load(errors.save())
+    assert restored.summary() == errors.summary()
+    assert restored.save()["window"] == 8
 
 
 def test_windows_are_sampled_at_powers_of_two_and_then_evenly():
@@ -89,7 +89,7 @@ def test_what_comes_to_rest_is_no_swing():
 
 
 def relaxed(gain, relaxation, windows, noise=0.0, seed=2):
-    """A field whose answer to a change of what is handed on is that times -gain; its rest is 0."""
+    """A field that answers a change of the value handed on by -gain times it; its rest is 0."""
     random = np.random.default_rng(seed)
     settling = Settling(np.full(16, 100.0))
     for _ in range(windows):

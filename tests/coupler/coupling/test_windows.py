@@ -9,13 +9,13 @@ from quintet.coupler.coupling.windows import CALM, Windows, auto_length, in_tick
 from quintet.interfaces.errors import StepError
 
 
-def lengths(windows, stable=lambda time: math.inf, most=100_000):
+def lengths(windows, stable=lambda time: math.inf, limit=100_000):
     """Ticks of all windows to the end, where the state allows `stable` [s] at each time [s]."""
-    found = []
-    while not windows.finished and len(found) < most:
-        found.append(windows.next(stable(windows.time)))
-        windows.advance(found[-1])
-    return np.array(found)
+    ticks = []
+    while not windows.finished and len(ticks) < limit:
+        ticks.append(windows.next(stable(windows.time)))
+        windows.advance(ticks[-1])
+    return np.array(ticks)
 
 
 @pytest.mark.parametrize("end", [1.0, 0.3, 1.8, 1e-6, 12345.678])
@@ -42,7 +42,7 @@ def test_fixed_windows_beside_a_group_that_follows_end_exactly_too():
 @pytest.mark.parametrize("stable", [0.013, 1.7e-5])
 def test_lengths_have_four_significant_bits_and_lose_little(stable):
     windows = run_windows(1.0, math.inf, follows=True, exact=True)
-    ticks = int(lengths(windows, lambda time: stable, most=1)[0])
+    ticks = int(lengths(windows, lambda time: stable, limit=1)[0])
     assert ticks.bit_length() - 4 <= (ticks & -ticks).bit_length() - 1
     assert 8 / 9 * stable < ticks * windows.tick <= stable
 
@@ -102,8 +102,8 @@ def test_a_state_that_allows_no_step_is_refused():
     ],
 )
 def test_auto_is_the_largest_finite_step_within_bounds(stable, equal, length, why):
-    found, reason = auto_length(stable, equal)
-    assert found == pytest.approx(length) and why in reason
+    window, reason = auto_length(stable, equal)
+    assert window == pytest.approx(length) and why in reason
 
 
 def test_windows_of_a_group_divide_those_around_it():
@@ -119,7 +119,7 @@ def test_saved_windows_go_on_alike():
     def stable(time):
         return 0.02 if 0.2 < time < 0.3 else 0.07
 
-    one, other = (run_windows(2.0, math.inf, follows=True, exact=True) for _ in range(2))
-    lengths(one, stable, most=20)
-    other.load(one.save())
-    assert (lengths(one, stable) == lengths(other, stable)).all()
+    original, restored = (run_windows(2.0, math.inf, follows=True, exact=True) for _ in range(2))
+    lengths(original, stable, limit=20)
+    restored.load(original.save())
+    assert (lengths(original, stable) == lengths(restored, stable)).all()

@@ -1,4 +1,4 @@
-"""Samples of what links join in tests, as solvers give them."""
+"""Samples of the bodies that links join in tests, as solvers give them."""
 
 from functools import partial
 
@@ -29,13 +29,13 @@ def mesh(static):
 
 
 def bound(link, described, **answers):
-    """What a link makes of what components describe and answer."""
-    told = dict(described)
+    """The binding of a link, from the descriptions and answers of components."""
+    descriptions = dict(described)
     for name, request in link.requests(described).items():
-        told[name] = {**described[name], **answers[name](request)}
-    return link.bind(told)
+        descriptions[name] = {**described[name], **answers[name](request)}
+    return link.bind(descriptions)
 
 
 def masses(count):
-    """What rigid bodies describe."""
+    """The description of rigid bodies."""
     return {"motion.mass": np.ones(count)}
