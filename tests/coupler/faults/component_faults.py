@@ -9,7 +9,7 @@ from started import TOYS, Started, write_scene
 TRANSPORTS = ("memory", "zenoh", "mpi")
 AT = 60  # window in which it fails
 FINISHED = 1e-3 * AT  # s, end of a run that fails as it finishes
-# What the component does as it fails: moment of toy_faults.Faulty, and step.
+# Activity of the component at its failure: moment of toy_faults.Faulty, and step.
 MOMENTS = {
     "build": ("build", -1),
     "first window": ("step", 0),
@@ -22,7 +22,7 @@ LATER = "later window"
 
 @dataclass(frozen=True)
 class Fault:
-    """One way to fail, and what becomes of the process."""
+    """One way to fail, and the state of the process afterwards."""
 
     name: str
     kind: str
@@ -64,7 +64,7 @@ BY_NAME = {fault.name: fault for fault in FAULTS}
 
 
 def applies(fault, moment, transport):
-    """Whether there is such a cell."""
+    """Whether this combination is possible."""
     ends = moment == "finish" and fault.outputs and fault.name != "None"
     return transport in fault.transports and not ends
 
@@ -79,12 +79,12 @@ CASES = [
 
 
 def patience_of(fault, moment, patience):
-    """Patience of a run [s]: computing as it is built is limited by thirty times that."""
+    """Patience of a run [s]; a component may compute thirty times as long during its build."""
     return 0.3 if moment == "build" and fault.kind == "hangs" and fault.computes else patience
 
 
 def fail(fault, moment, transport, folder, patience):
-    """Run a scene of two components, one of which fails; return what the run did."""
+    """Run a scene of two components, one of which fails; return the outcome."""
     folder.mkdir(parents=True, exist_ok=True)
     shutil.copy(TOYS.with_name("toy_faults.py"), folder)
     note, (fails_in, fails_at) = folder / "moment", MOMENTS[moment]
@@ -101,7 +101,7 @@ def fail(fault, moment, transport, folder, patience):
 
 
 def expected(fault, moment, transport, patience):
-    """What such a run must do."""
+    """The outcome that such a run must have."""
     window = AT if moment in (LATER, "give", "finish") else 0
     kind, cause, status = fault.kind, fault.cause, 3
     if transport == "memory" and fault.over_memory is not None:

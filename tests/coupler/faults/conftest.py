@@ -1,4 +1,4 @@
-"""What tests of faults share: a scene with a component that does as it is told."""
+"""Fixtures of the tests of faults: a scene with a component that fails as its parameters ask."""
 
 import shutil
 

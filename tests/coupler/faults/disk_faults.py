@@ -4,7 +4,7 @@ from full_disk import broken_rules, fill, make_disk, start
 from outcomes import Reader
 
 TRANSPORTS = ("memory", "zenoh", "mpi")
-WRITTEN = {  # on a full disk: what finds no room
+WRITTEN = {  # on a full disk: the file that finds no room
     "recording": "recording.h5",
     "ledger": "ledger.csv",
     "snapshot": "snapshot-",
@@ -12,19 +12,19 @@ WRITTEN = {  # on a full disk: what finds no room
 }
 
 
-def full_disk(written, transport, folder):
+def full_disk(file_kind, transport, folder):
     """Run a scene whose disk becomes full; return the rules it broke, the time, and the cause."""
     disk = make_disk("disk", folder)
     try:
-        run, _, _ = start(folder, disk, transport, WRITTEN[written])
+        run, _, _ = start(folder, disk, transport, WRITTEN[file_kind])
         reader = Reader(run)
-        at = fill(run, disk, WRITTEN[written])
-        _, ended, _ = reader.wait(60.0)
+        filled_at = fill(run, disk, WRITTEN[file_kind])
+        _, end_time, _ = reader.wait(60.0)
         run.err = "".join(line for _, line in reader.lines)
-        broken = broken_rules(run, disk, WRITTEN[written])
-        said = reader.first("it cannot be written") or ended
+        broken = broken_rules(run, disk, WRITTEN[file_kind])
+        reported_at = reader.first("it cannot be written") or end_time
         cause = next((line for _, line in reader.lines if "it cannot be written" in line), "")
         cause = cause.removeprefix("quintet: coupler failed in ").strip().partition(": ")[2]
-        return broken, said - at, cause
+        return broken, reported_at - filled_at, cause
     finally:
         disk.close()

@@ -1,9 +1,9 @@
-"""Runs that are disturbed on purpose, by kills from outside or by ``--chaos``; ``python`` it.
+"""Runs that are disturbed on purpose, by kills from outside or by ``--chaos``; a command.
 
 ``disturbed_runs.py chaos SCENE --seeds 200`` runs a scene with the seeds 0 to 199 of ``--chaos``.
 ``disturbed_runs.py kills SCENE --seeds 25`` kills a component, a rank, the coupler or all processes
-at once at random moments, and resumes the run where it ended with that. Both compare the bits with
-those of an undisturbed run, look for what is left behind, and print a table.
+at once at random moments, and resumes the run if a kill ended it. Both compare the bits with
+those of an undisturbed run, look for leftover processes and files, and print a table.
 """
 
 import argparse
@@ -34,28 +34,28 @@ class Verdict:
     end: str
     detail: str = ""
     resumed: str = ""  # how a run that had failed went on
-    chaos: dict = field(default_factory=dict)  # what results.json says of ``--chaos``
+    chaos: dict = field(default_factory=dict)  # the entry of ``--chaos`` in results.json
     left: list[str] = field(default_factory=list)
     lost: list[float] = field(default_factory=list)  # s of work, of each kill
     seconds: float = 0.0
 
     @property
     def right(self):
-        """Whether it is what the rule allows."""
+        """Whether the rule allows this end."""
         allowed = self.end in (AS_UNDISTURBED, NAMED) and self.resumed in ("", AS_UNDISTURBED)
         return allowed and not self.left
 
 
 def left_by(run):
     """Processes and shared memory that a run has left."""
-    left = [f"process {pid}" for pid in run.left_processes(5.0)]
-    return left + [f"/dev/shm/{name}" for name in run.left_in_shared_memory()]
+    leftovers = [f"process {pid}" for pid in run.left_processes(5.0)]
+    return leftovers + [f"/dev/shm/{name}" for name in run.left_in_shared_memory()]
 
 
-def compared(run, alone, status):
+def compared(run, reference, status):
     """Whether a run that came to its end has the status and the bits of one alone."""
     try:
-        equal = same(run.folder, alone.folder)
+        equal = same(run.folder, reference.folder)
     except (AssertionError, OSError, KeyError) as error:
         return WRONG, f"it differs: {error!r:.200}"
     if not equal or run.process.returncode != status:
@@ -64,56 +64,58 @@ def compared(run, alone, status):
 
 
 def kind_of(cause):
-    """A cause without what differs from run to run."""
+    """A cause without the details that differ from run to run."""
     cause = re.split(r" The run is disturbed| \(\d", cause)[0]
     cause = re.sub(r"^\S+/(?=[\w.-]+: it cannot be written)", "", cause)
     return re.sub(r"-?\d+(\.\d+)?(e-?\d+)?", "N", cause)[:110]
 
 
-def judge(run, alone, status, seconds):
+def judge(run, reference, status, seconds):
     """Wait for the end of a run, and judge it."""
-    began = time.monotonic()
+    start = time.monotonic()
     try:
-        ended = run.wait(10.0 * seconds + HANG)
+        exit_status = run.wait(10.0 * seconds + HANG)
     except subprocess.TimeoutExpired:
         return Verdict(HANGS, "after " + " ".join(run.err.split())[-200:])
-    left = left_by(run)
+    leftovers = left_by(run)
     results = run.results if (run.folder / "results.json").is_file() else {}
-    if ended == 3:
+    if exit_status == 3:
         cause = results.get("fault", {}).get("cause", "")
-        told = cause and "Traceback" not in run.err
-        verdict = Verdict(NAMED if told else WRONG, kind_of(cause) or "no cause", left=left)
-        verdict.resumed = resumed(run, alone, status) if "resume" in results else ""
+        explained = cause and "Traceback" not in run.err
+        verdict = Verdict(
+            NAMED if explained else WRONG, kind_of(cause) or "no cause", left=leftovers
+        )
+        verdict.resumed = resumed(run, reference, status) if "resume" in results else ""
     else:
-        verdict = Verdict(*compared(run, alone, status), left=left)
+        verdict = Verdict(*compared(run, reference, status), left=leftovers)
     verdict.chaos = results.get("chaos", {})
-    verdict.seconds = time.monotonic() - began
+    verdict.seconds = time.monotonic() - start
     return verdict
 
 
-def resumed(run, alone, status):
+def resumed(run, reference, status):
     """How a run that failed goes on."""
-    again = Started(run.scene, out=run.folder, resumes=True)
-    again.wait(LONGEST)
-    return compared(again, alone, status)[0]
+    resumed_run = Started(run.scene, out=run.folder, resumes=True)
+    resumed_run.wait(LONGEST)
+    return compared(resumed_run, reference, status)[0]
 
 
-def of_chaos(options, scene, place, seed, alone, status, seconds, arguments):
+def of_chaos(options, scene, place, seed, reference, status, seconds, arguments):
     """A run with a seed of ``--chaos``."""
     run = Started(scene, "--chaos", str(seed), *arguments, out=place)
-    verdict = judge(run, alone, status, seconds)
+    verdict = judge(run, reference, status, seconds)
     if not verdict.right:
         print(run.err[-4000:])
     return verdict
 
 
-def of_kills(options, scene, place, seed, alone, status, seconds, arguments):
+def of_kills(options, scene, place, seed, reference, status, seconds, arguments):
     """A run among kills from outside."""
     settings = list(arguments)
     if options.transport == "zenoh":
         settings += ["--set", f"restarts={2 * options.kills}"]
     killed = Killed(scene, place, settings, seed, options.kills, seconds, options.who)
-    verdict = judge(killed.run, alone, status, seconds)
+    verdict = judge(killed.run, reference, status, seconds)
     verdict.lost = killed.lost()
     print("   ", "; ".join(killed.told), flush=True)
     if not verdict.right:
@@ -122,18 +124,18 @@ def of_kills(options, scene, place, seed, alone, status, seconds, arguments):
 
 
 def undisturbed(options, scene, folder, arguments):
-    """Run the scene alone, twice: the first time, kernels may be compiled; tell its seconds."""
+    """Run the scene undisturbed, twice (the first compiles); return run, status and seconds."""
     for name in ("compiles", "alone"):
-        began = time.monotonic()
-        alone = Started(scene, *arguments, out=folder / name)
-        status = alone.wait(LONGEST)
-        assert status in (0, 1), alone.err
-    return alone, status, time.monotonic() - began
+        start = time.monotonic()
+        reference = Started(scene, *arguments, out=folder / name)
+        status = reference.wait(LONGEST)
+        assert status in (0, 1), reference.err
+    return reference, status, time.monotonic() - start
 
 
 def series(options):
     """Try one scene with many seeds; return the number of runs that broke the rule."""
-    arguments = [word for setting in options.set for word in ("--set", setting)]
+    arguments = [argument for setting in options.set for argument in ("--set", setting)]
     arguments += ["--preset", options.preset] if options.preset else []
     arguments += ["--transport", options.transport]
     ways = {"chaos": of_chaos, "kills": of_kills}
@@ -144,19 +146,19 @@ def series(options):
         Started.command = staticmethod(
             lambda _: [sys.executable, "-m", "quintet.coupler.cli", "run", options.scene]
         )
-        alone, status, seconds = undisturbed(options, scene, folder, arguments)
+        reference, status, seconds = undisturbed(options, scene, folder, arguments)
         seconds = options.within or seconds
         print(f"undisturbed: status {status}, {seconds:.1f} s", flush=True)
         for seed in range(options.first, options.first + options.seeds):
             verdict = ways[options.way](
-                options, scene, folder / str(seed), seed, alone, status, seconds, arguments
+                options, scene, folder / str(seed), seed, reference, status, seconds, arguments
             )
             verdicts.append(verdict)
-            more = [verdict.detail, verdict.resumed and f"resumed: {verdict.resumed}"]
-            more += [f"work lost {max(verdict.lost):.1f} s"] if verdict.lost else []
-            more += [f"LEFT {verdict.left}"] if verdict.left else []
-            said = "; ".join(filter(None, [verdict.end, *more]))
-            print(f"seed {seed}: {said}; {verdict.seconds:.1f} s", flush=True)
+            details = [verdict.detail, verdict.resumed and f"resumed: {verdict.resumed}"]
+            details += [f"work lost {max(verdict.lost):.1f} s"] if verdict.lost else []
+            details += [f"LEFT {verdict.left}"] if verdict.left else []
+            summary = "; ".join(filter(None, [verdict.end, *details]))
+            print(f"seed {seed}: {summary}; {verdict.seconds:.1f} s", flush=True)
     print(table(verdicts))
     return sum(not verdict.right for verdict in verdicts)
 
@@ -166,8 +168,8 @@ def table(verdicts):
     rows = Counter((verdict.end, verdict.detail, verdict.resumed) for verdict in verdicts)
     lines = ["", "| runs | end | cause | resumed |", "|--:|---|---|---|"]
     lines += [f"| {number} | {' | '.join(row)} |" for row, number in sorted(rows.items())]
-    left = sum(bool(verdict.left) for verdict in verdicts)
-    lines.append(f"\n{len(verdicts)} runs, {left} of them left something behind")
+    unclean_runs = sum(bool(verdict.left) for verdict in verdicts)
+    lines.append(f"\n{len(verdicts)} runs, {unclean_runs} of them left something behind")
     lost = [seconds for verdict in verdicts for seconds in verdict.lost]
     if lost:
         lines.append(f"{len(lost)} kills, at most {max(lost):.1f} s of work lost with one")

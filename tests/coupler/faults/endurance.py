@@ -1,4 +1,4 @@
-"""Memory, descriptors and files of a long run; ``python`` it with a number of windows.
+"""Memory, descriptors and files of a long run; a command that takes a number of windows.
 
 ``python tests/coupler/faults/endurance.py 200000 --transport zenoh --restarts`` runs two small
 components, samples all processes of the run, and writes a table and a picture.
@@ -46,7 +46,7 @@ def read_memory(pid):
 
 
 def name_of(pid, first, transport):
-    """What a process of the run is."""
+    """The role of a process of the run."""
     words = Path(f"/proc/{pid}/cmdline").read_bytes().decode().split("\0")
     program = Path(words[0]).name
     if program.startswith(("mpiexec", "hydra")) or program == "sh":
@@ -78,13 +78,13 @@ class Samples:
                     self._said = int(part.split()[1])
 
     def close(self):
-        """End the run, whatever of it still runs; return what it said of errors."""
+        """End all processes of the run; return its error output."""
         self.run.end()
-        said = self.run.process.stderr.read()
+        errors = self.run.process.stderr.read()
         self._reader.join()
         self.run.process.stdout.close()
         self.run.process.stderr.close()
-        return said
+        return errors
 
     def windows(self):
         """Windows done."""
@@ -117,7 +117,7 @@ class Samples:
 
 
 def half(rows, windows):
-    """Samples (n, 6) of the second half of the windows; what comes after the last is left out."""
+    """Samples (n, 6) of the second half of the windows, without those after the last window."""
     rows = np.array(rows, float)
     return rows[(rows[:, 0] >= WARM * windows) & (rows[:, 0] < windows)]
 
@@ -128,45 +128,46 @@ def summary(samples, windows):
     for name, rows in samples.rows.items():
         if rows[-1][0] < 0.9 * windows or rows[0][0] > 0.4 * windows:
             continue  # not there all the time
-        late = half(rows, windows)
-        slope = np.polyfit(late[:, 0], late[:, 3], 1)[0]
+        late_samples = half(rows, windows)
+        slope = np.polyfit(late_samples[:, 0], late_samples[:, 3], 1)[0]
         name = name.rpartition(" ")[0]
         table[f"{name} 2" if name in table else name] = {
-            "rss": late[-1, 2],  # bytes, at the end
-            "pss": late[-1, 1],
-            "growth": late[-1, 3] - late[0, 3],  # bytes of anonymous memory, second half
+            "rss": late_samples[-1, 2],  # bytes, at the end
+            "pss": late_samples[-1, 1],
+            # bytes of anonymous memory, second half
+            "growth": late_samples[-1, 3] - late_samples[0, 3],
             "slope": slope,  # bytes a window
-            "descriptors": [int(late[:, 4].min()), int(late[:, 4].max())],
-            "threads": [int(late[:, 5].min()), int(late[:, 5].max())],
+            "descriptors": [int(late_samples[:, 4].min()), int(late_samples[:, 4].max())],
+            "threads": [int(late_samples[:, 5].min()), int(late_samples[:, 5].max())],
         }
-    late = [row for row in samples.files if row["windows"] >= WARM * windows]
-    first, last = late[0], late[-1]
+    late_samples = [row for row in samples.files if row["windows"] >= WARM * windows]
+    first, last = late_samples[0], late_samples[-1]
     span = max(1, last["windows"] - first["windows"])
     files = {name: (last[name] - first[name]) / span for name in FILES if name in first}
     return {"windows": windows, "processes": table, "files": files}
 
 
 def endure(folder, windows, transport, restarts=False, record=True, views=True, interval=0.5):
-    """Run so many windows; return the samples and what they amount to."""
-    seen = "seen = true" if views else ""
-    scene = write_scene(folder, transport, WINDOW * windows, seen, seen)
-    every = VIEWS * WINDOW if views else 0.0
-    more = SCENE.format(interval=every, record=str(record).lower())
-    scene.write_text(scene.read_text() + more)
+    """Run a number of windows; return the samples and their summary."""
+    keys = "seen = true" if views else ""
+    scene = write_scene(folder, transport, WINDOW * windows, keys, keys)
+    view_interval = VIEWS * WINDOW if views else 0.0
+    output = SCENE.format(interval=view_interval, record=str(record).lower())
+    scene.write_text(scene.read_text() + output)
     run = Started(scene, *(["--set", "restarts=3"] if restarts else []))
-    samples, began = Samples(run, transport), time.monotonic()
+    samples, start = Samples(run, transport), time.monotonic()
     try:
         samples.take_all(interval, 30.0 + 0.05 * windows)
     finally:
-        said = samples.close()
-    assert run.process.wait() == 0, said
+        errors = samples.close()
+    assert run.process.wait() == 0, errors
     assert run.results["windows"] == windows
-    found = summary(samples, windows) | {"seconds": time.monotonic() - began}
-    found |= {"transport": transport, "restarts": restarts, "record": record, "views": views}
-    return samples, found
+    report = summary(samples, windows) | {"seconds": time.monotonic() - start}
+    report |= {"transport": transport, "restarts": restarts, "record": record, "views": views}
+    return samples, report
 
 
-def draw(samples, found, path):
+def draw(samples, report, path):
     """Draw memory and descriptors of every process over the windows."""
     from matplotlib.figure import Figure
 
@@ -177,10 +178,10 @@ def draw(samples, found, path):
         if len(rows) > 2:
             panels[0].plot(rows[:, 0], rows[:, 3] / 1e6, label=name.rpartition(" ")[0])
             panels[1].plot(rows[:, 0], rows[:, 4])
-    for name in found["files"]:
-        there = [row for row in samples.files if name in row]
-        sizes = [row[name] / 1e6 for row in there]
-        panels[2].plot([row["windows"] for row in there], sizes, label=name)
+    for name in report["files"]:
+        points = [row for row in samples.files if name in row]
+        sizes = [row[name] / 1e6 for row in points]
+        panels[2].plot([row["windows"] for row in points], sizes, label=name)
     labels = ("anonymous memory [MB]", "descriptors", "files [MB]")
     for panel, label in zip(panels, labels, strict=True):
         panel.set(ylabel=label)
@@ -189,23 +190,23 @@ def draw(samples, found, path):
     panels[0].legend(fontsize=8)
     panels[2].legend(fontsize=8)
     panels[2].set(xlabel="windows")
-    words = [f"{found['windows']} windows over {found['transport']}"]
-    words += [word for word in ("restarts", "record", "views") if found[word]]
-    figure.suptitle(", ".join(words))
+    title_parts = [f"{report['windows']} windows over {report['transport']}"]
+    title_parts += [option for option in ("restarts", "record", "views") if report[option]]
+    figure.suptitle(", ".join(title_parts))
     figure.savefig(path, dpi=100)
 
 
-def table(found):
+def table(report):
     """One line for each process and file."""
-    lines = [f"{found['windows']} windows over {found['transport']} in {found['seconds']:.0f} s"]
-    for name, row in found["processes"].items():
+    lines = [f"{report['windows']} windows over {report['transport']} in {report['seconds']:.0f} s"]
+    for name, row in report["processes"].items():
         growth = f"{row['growth'] / 1e6:+.2f} MB in the second half, {row['slope']:+.1f} B/window"
         low, high = row["descriptors"]
         lines.append(
             f"{name:20} {row['rss'] / 1e6:7.1f} MB, PSS {row['pss'] / 1e6:6.1f} MB, {growth}, "
             f"{low} to {high} descriptors, {row['threads'][1]} threads"
         )
-    lines += [f"{name:20} {size:.0f} B/window" for name, size in found["files"].items()]
+    lines += [f"{name:20} {size:.0f} B/window" for name, size in report["files"].items()]
     return "\n".join(lines)
 
 
@@ -217,15 +218,15 @@ if __name__ == "__main__":
     parser.add_argument("--bare", action="store_true", help="no recording, no views")
     parser.add_argument("--out", type=Path, help="folder for table, numbers and picture")
     options = parser.parse_args()
-    wanted = {"record": not options.bare, "views": not options.bare}
+    outputs = {"record": not options.bare, "views": not options.bare}
     with tempfile.TemporaryDirectory() as place:
-        samples, found = endure(
-            Path(place), options.windows, options.transport, options.restarts, **wanted
+        samples, report = endure(
+            Path(place), options.windows, options.transport, options.restarts, **outputs
         )
-    print(table(found))
+    print(table(report))
     if options.out:
         options.out.mkdir(parents=True, exist_ok=True)
         stem = f"{options.transport}{'-restarts' if options.restarts else ''}"
         stem += "-bare" if options.bare else ""
-        draw(samples, found, options.out / f"{stem}.png")
-        (options.out / f"{stem}.json").write_text(json.dumps(found, indent=2))
+        draw(samples, report, options.out / f"{stem}.png")
+        (options.out / f"{stem}.json").write_text(json.dumps(report, indent=2))

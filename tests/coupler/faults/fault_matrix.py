@@ -1,7 +1,7 @@
-"""Every fault at every moment over every transport: what a run then does, as two tables.
+"""Every fault at every moment over every transport: the outcomes of the runs, as two tables.
 
 ``python tests/coupler/faults/fault_matrix.py`` tries all of them and writes the tables into
-coupler/README.md. What each cell did is kept in a file, so that a matrix that was ended goes on;
+coupler/README.md. The result of each cell is kept in a file, so that an ended matrix can go on;
 cells that broke a rule are tried again. ``--fault``, ``--moment`` and ``--transport`` try a part.
 The tests hold each cell to the same rules.
 """
@@ -45,11 +45,11 @@ class Cell:
         return f"{self.fault}, {self.moment}, {self.transport}"
 
     def run(self, folder, slack):
-        """Try it; return what is kept of it."""
+        """Try the cell; return the result to keep."""
         if self.fault.startswith(DISK):
             name = self.fault.removeprefix(DISK)
-            broken, said, cause = disk_faults.full_disk(name, self.transport, folder)
-            return {"broken": broken, "told": None, "said": said, "cause": cause}
+            broken, delay, cause = disk_faults.full_disk(name, self.transport, folder)
+            return {"broken": broken, "told": None, "said": delay, "cause": cause}
         rank = self.fault.startswith(ONE_RANK)
         module = rank_faults if rank else component_faults
         name = self.fault.removeprefix(ONE_RANK)
@@ -60,10 +60,10 @@ class Cell:
         else:
             rules = component_faults.expected(fault, self.moment, self.transport, PATIENCE)
             broken = broken_rules(rules, outcome, slack)
-        told = outcome.told if fault.kind == "hangs" else None
+        naming_delay = outcome.told if fault.kind == "hangs" else None
         return {
             "broken": broken,
-            "told": told,
+            "told": naming_delay,
             "said": outcome.said,
             "status": outcome.status,
             "cause": outcome.cause,
@@ -76,13 +76,13 @@ def cells():
         yield Cell(fault.name, moment, transport)
     for fault, moment, transport in rank_faults.CASES:
         yield Cell(ONE_RANK + fault.name, moment, transport)
-    for written in disk_faults.WRITTEN:
+    for file_kind in disk_faults.WRITTEN:
         for transport in TRANSPORTS:
-            yield Cell(DISK + written, LATER, transport)
+            yield Cell(DISK + file_kind, LATER, transport)
 
 
 class Kept:
-    """What cells did, in a file."""
+    """Results of cells, in a file."""
 
     def __init__(self, path, again):
         self.path = path
@@ -93,7 +93,7 @@ class Kept:
         return cell.key in self.cells and not self.cells[cell.key]["broken"]
 
     def add(self, cell, result):
-        """Keep what a cell did."""
+        """Keep the result of a cell."""
         self.cells[cell.key] = result
         part = self.path.with_suffix(".part")
         part.write_text(json.dumps(self.cells, indent=1))
@@ -107,9 +107,9 @@ def worst(results):
         return "; ".join(dict.fromkeys(broken))
     if not results:
         return ""
-    said = max(result["said"] for result in results)
+    delay = max(result["said"] for result in results)
     hangs = [result["told"] for result in results if result["told"] is not None]
-    return f"{max(0.0, *hangs, 0.0):.1f} s, {said:.1f} s" if hangs else f"{max(said, 0.0):.2f} s"
+    return f"{max(0.0, *hangs, 0.0):.1f} s, {delay:.1f} s" if hangs else f"{max(delay, 0.0):.2f} s"
 
 
 def by_transport(results):
@@ -163,17 +163,19 @@ def parsed(arguments):
 
 
 def main(arguments=None):
-    """Try all cells that were asked for and are not kept; write the tables once none is missing."""
+    """Try all chosen cells without a kept result; write the tables if no cell is missing."""
     options = parsed(arguments)
     options.cells.parent.mkdir(parents=True, exist_ok=True)
-    kept = Kept(options.cells, options.again)
+    kept_results = Kept(options.cells, options.again)
     for cell in cells():
-        asked = (
+        filters = (
             (options.fault, cell.fault),
             (options.moment, cell.moment),
             (options.transport, cell.transport),
         )
-        if kept.is_right(cell) or any(names and name not in names for names, name in asked):
+        if kept_results.is_right(cell) or any(
+            names and name not in names for names, name in filters
+        ):
             continue
         with tempfile.TemporaryDirectory() as folder:
             try:
@@ -181,16 +183,20 @@ def main(arguments=None):
             except Exception as error:  # so that the others are tried
                 broken = [f"{type(error).__name__}: {error}"]
                 result = {"broken": broken, "told": None, "said": 0.0, "cause": ""}
-        kept.add(cell, result)
+        kept_results.add(cell, result)
         print(f"{cell.key}: {worst([result])}", flush=True)
-    missing = [cell.key for cell in cells() if cell.key not in kept.cells]
-    wrong = [cell.key for cell in cells() if cell.key in kept.cells and not kept.is_right(cell)]
+    missing = [cell.key for cell in cells() if cell.key not in kept_results.cells]
+    broken_cells = [
+        cell.key
+        for cell in cells()
+        if cell.key in kept_results.cells and not kept_results.is_right(cell)
+    ]
     if missing:
         print(f"{len(missing)} cells are missing: the tables are not written")
     else:
-        write_tables(kept.cells)
-    print("\n".join([f"{len(wrong)} cells broke a rule", *wrong]))
-    return 1 if wrong else 0
+        write_tables(kept_results.cells)
+    print("\n".join([f"{len(broken_cells)} cells broke a rule", *broken_cells]))
+    return 1 if broken_cells else 0
 
 
 if __name__ == "__main__":

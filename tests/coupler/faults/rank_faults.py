@@ -9,7 +9,7 @@ from started import Started
 
 TRANSPORTS = ("zenoh", "mpi")
 WINDOW, FIRST_STEP = 60, 120  # of the later moment
-# What the rank does as it fails: moment of toy_rank_faults.FaultyChain, and step.
+# Activity of the rank at its failure: moment of toy_rank_faults.FaultyChain, and step.
 MOMENTS = {
     "build": ("build", -1),
     "first window": ("step", 0),
@@ -21,7 +21,7 @@ MOMENTS = {
 class RankFault:
     """One way of rank 1 to fail.
 
-    `kind` is what becomes of it: it says so itself, it is dead, stopped, or it hangs.
+    `kind` is the fate of the rank: it reports the fault, it is dead, stopped, or it hangs.
     """
 
     name: str
@@ -59,7 +59,7 @@ def fail(fault, moment, transport, folder, patience):
 def wrong(fault, moment, patience, outcome, slack=0.5):
     """Rules that a run broke; a loaded machine may need some seconds more."""
     window = WINDOW if moment == "later window" else 0
-    # Ranks have told who they are, and are watched, before they build.
+    # Ranks have reported their names, and are watched, before they build.
     expected = Expected("chain", window, fault.cause, fault.kind, patience=patience)
     broken = broken_rules(expected, outcome, slack)
     if RANK not in outcome.cause or "rank 0" in outcome.cause:

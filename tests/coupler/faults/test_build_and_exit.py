@@ -1,4 +1,4 @@
-"""A component that hangs as it is built, or as its process ends, does not keep the run for ever."""
+"""A component that hangs during its build or at its exit does not block the run for ever."""
 
 import psutil
 import pytest
@@ -8,12 +8,12 @@ OVER = ["memory", ZENOH, pytest.param("mpi", marks=pytest.mark.mpi)]
 LOADED = 60.0  # s, in which it ends on a loaded machine
 
 
-def _hangs(faulty, by, transport, patience):
-    return faulty("Hanging", transport, f'fails_by = "{by}"', top=f"patience = {patience}")
+def _hangs(faulty, cause, transport, patience):
+    return faulty("Hanging", transport, f'fails_by = "{cause}"', top=f"patience = {patience}")
 
 
 def check_build(run, activity, line):
-    """The run failed, and said who, why, after how long and where."""
+    """The run failed, and named the component, the cause, the time and the place."""
     assert run.wait(LOADED) == 3, run.err
     fault = run.results["fault"]
     assert fault["component"] == "pong" and "to be built" in fault["cause"]
@@ -53,5 +53,9 @@ def test_over_memory_processes_of_a_component_end_when_an_exception_ends_the_run
     run = faulty("Faulty", "memory", pong)
     assert run.wait(LOADED) == 3 and run.results["fault"]["component"] == "pong"
     assert not run.left_processes()
-    mine = (p for p in psutil.process_iter() if p.status() != psutil.STATUS_ZOMBIE)
-    assert not [p for p in mine if "time.sleep(601)" in " ".join(p.cmdline())]
+    processes = (
+        process for process in psutil.process_iter() if process.status() != psutil.STATUS_ZOMBIE
+    )
+    assert not [
+        process for process in processes if "time.sleep(601)" in " ".join(process.cmdline())
+    ]

@@ -21,21 +21,21 @@ SCENES = {  # arguments, and roughly how long a run takes [s]
 
 @pytest.fixture(scope="module")
 def toy(tmp_path_factory):
-    """A scene of two toys, and a run of it that nothing disturbs."""
+    """A scene of two toys, and an undisturbed run of it."""
     folder = tmp_path_factory.mktemp("toy")
     scene = write_scene(folder, "zenoh", 0.2, "pause = 5e-4", "pause = 5e-4\nseen = true")
     output = "\n[output]\ninterval = 0.02\nsnapshots = 0.05\n"
     scene.write_text(f"patience = 8.0\n{scene.read_text()}{output}")
-    alone = Started(scene, out=folder / "alone")
-    assert alone.wait() == 0, alone.err
-    return scene, alone
+    reference = Started(scene, out=folder / "alone")
+    assert reference.wait() == 0, reference.err
+    return scene, reference
 
 
 def check(toy, folder, seed, *arguments):
-    """A disturbed run is as the rule says, and tells what happened."""
-    scene, alone = toy
+    """A disturbed run ends as the rule allows, and reports the disturbances."""
+    scene, reference = toy
     run = Started(scene, "--chaos", str(seed), *arguments, out=folder)
-    verdict = judge(run, alone, 0, 5.0)
+    verdict = judge(run, reference, 0, 5.0)
     assert verdict.right, (verdict, run.err)
     chaos = verdict.chaos
     assert chaos["seed"] == seed and chaos["planned"]
@@ -64,18 +64,18 @@ def test_a_run_over_memory_is_disturbed_too(toy, tmp_path):
     check(toy, tmp_path / "out", 1, "--transport", "memory")
 
 
-@pytest.mark.parametrize("who", ["coupler", "host"])
-def test_a_run_whose_coupler_or_host_is_killed_is_resumed_with_the_same_bits(toy, tmp_path, who):
-    scene, alone = toy
-    killed = Killed(scene, tmp_path / "out", ["--set", "restarts=2"], 1, 1, 3.0, who)
-    assert judge(killed.run, alone, 0, 5.0).end == AS_UNDISTURBED, killed.told
+@pytest.mark.parametrize("target", ["coupler", "host"])
+def test_a_run_whose_coupler_or_host_is_killed_is_resumed_with_the_same_bits(toy, tmp_path, target):
+    scene, reference = toy
+    killed = Killed(scene, tmp_path / "out", ["--set", "restarts=2"], 1, 1, 3.0, target)
+    assert judge(killed.run, reference, 0, 5.0).end == AS_UNDISTURBED, killed.told
     assert len(killed.lost()) == 1 and killed.told
 
 
 def test_water_and_a_body_that_are_killed_at_once_go_on_with_the_same_bits(tmp_path):
     settings = ("--set", "end=0.06", "--set", "output.snapshots=0.02", "--transport", "zenoh")
-    alone = Started(SMALL_DAM, *settings, out=tmp_path / "alone")
-    assert alone.wait(300.0) == 0, alone.err
+    reference = Started(SMALL_DAM, *settings, out=tmp_path / "alone")
+    assert reference.wait(300.0) == 0, reference.err
     run = Started(SMALL_DAM, "--set", "restarts=1", *settings, out=tmp_path / "killed")
     run.wait_until(lambda: list(run.folder.glob("snapshot-*.h5")))
     for name in ("water", "cube"):
@@ -83,7 +83,7 @@ def test_water_and_a_body_that_are_killed_at_once_go_on_with_the_same_bits(tmp_p
     assert run.wait(120.0) == 0, run.err
     assert {"water", "cube"} <= run.results["notes"].keys()
     assert not left_by(run)
-    assert same(run.folder, alone.folder)
+    assert same(run.folder, reference.folder)
 
 
 @pytest.mark.full
@@ -92,10 +92,10 @@ def test_water_and_a_body_that_are_killed_at_once_go_on_with_the_same_bits(tmp_p
 def test_scenes_among_kills_have_the_same_bits(tmp_path, name, seed):
     arguments, seconds = SCENES[name]
     scene, arguments = library()[name], ("--transport", "zenoh", *arguments)
-    alone = Started(scene, *arguments, out=tmp_path / "alone")
-    status = alone.wait(1200.0)
-    assert status in (0, 1), alone.err
+    reference = Started(scene, *arguments, out=tmp_path / "alone")
+    status = reference.wait(1200.0)
+    assert status in (0, 1), reference.err
     settings = [*arguments, "--set", "restarts=6"]
     killed = Killed(scene, tmp_path / "killed", settings, seed, 3, seconds)
-    verdict = judge(killed.run, alone, status, seconds)
+    verdict = judge(killed.run, reference, status, seconds)
     assert verdict.right and verdict.end == AS_UNDISTURBED, (verdict, killed.told)

@@ -12,29 +12,29 @@ MOST_OF_SHORT = 2e5  # bytes in the second half of 2000 windows, in which nothin
 SPARE = 2  # descriptors that are open for a moment: a snapshot, its folder
 
 
-def check_files_and_descriptors(samples, found):
-    for name, size in found["files"].items():
-        assert size < FILES[name], table(found)
-    processes = found["processes"]
+def check_files_and_descriptors(samples, report):
+    for name, size in report["files"].items():
+        assert size < FILES[name], table(report)
+    processes = report["processes"]
     for name, rows in samples.rows.items():
-        counts = [row[4] for row in rows if 0.05 * found["windows"] < row[0] < found["windows"]]
+        counts = [row[4] for row in rows if 0.05 * report["windows"] < row[0] < report["windows"]]
         if name.rpartition(" ")[0] in processes and counts:
-            assert max(counts) <= min(counts) + SPARE, table(found)
+            assert max(counts) <= min(counts) + SPARE, table(report)
 
 
 @pytest.mark.slow
 @pytest.mark.zenoh
 def test_two_thousand_windows_lose_no_descriptor_and_hold_no_memory(tmp_path):
-    # With restarts the first snapshot, after 5 s, would load what it needs in the second half.
-    samples, found = endure(tmp_path, 2000, "zenoh", interval=0.05)
-    assert {"coupler", "ping", "pong", "companion"} <= set(found["processes"])
-    for name, row in found["processes"].items():
-        assert row["growth"] < MOST_OF_SHORT, f"{name}: {table(found)}"
+    # With restarts the first snapshot, after 5 s, would load modules in the second half.
+    samples, report = endure(tmp_path, 2000, "zenoh", interval=0.05)
+    assert {"coupler", "ping", "pong", "companion"} <= set(report["processes"])
+    for name, row in report["processes"].items():
+        assert row["growth"] < MOST_OF_SHORT, f"{name}: {table(report)}"
     # The whole file: rows are written in batches, so that its growth between two looks varies.
-    del found["files"]["recording.h5"]
+    del report["files"]["recording.h5"]
     recorded = (samples.run.folder / "recording.h5").stat().st_size / 2000  # bytes a window
     assert 400.0 < recorded < FILES["recording.h5"], "it is recorded"
-    check_files_and_descriptors(samples, found)
+    check_files_and_descriptors(samples, report)
 
 
 RUNS = {
@@ -48,8 +48,8 @@ RUNS = {
 @pytest.mark.full
 @pytest.mark.parametrize("case", RUNS)
 def test_two_hundred_thousand_windows_end_with_the_memory_of_half_as_many(tmp_path, case):
-    samples, found = endure(tmp_path, 200_000, case.split()[0], **RUNS[case])
-    print(table(found))
-    for name, row in found["processes"].items():
-        assert row["slope"] < MOST.get(name, MOST_OF_OTHERS), table(found)
-    check_files_and_descriptors(samples, found)
+    samples, report = endure(tmp_path, 200_000, case.split()[0], **RUNS[case])
+    print(table(report))
+    for name, row in report["processes"].items():
+        assert row["slope"] < MOST.get(name, MOST_OF_OTHERS), table(report)
+    check_files_and_descriptors(samples, report)

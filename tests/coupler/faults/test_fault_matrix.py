@@ -1,4 +1,4 @@
-"""A run with a fault ends in time, says who, when and why, and leaves nothing behind."""
+"""A run with a fault ends in time, names component, window and cause, and leaves nothing behind."""
 
 import pytest
 from component_faults import BY_NAME, CASES, LATER, expected, fail
@@ -30,11 +30,17 @@ LOADED = 3.0  # s that a loaded machine may add
 MARKS = {"memory": (), "zenoh": pytest.mark.zenoh, "mpi": pytest.mark.mpi}
 
 
-def cases(chosen):
+def cases(cells):
     """Parameters of a test."""
     return [
-        pytest.param(fault, moment, over, id=f"{fault.name}, {moment}, {over}", marks=MARKS[over])
-        for fault, moment, over in chosen
+        pytest.param(
+            fault,
+            moment,
+            transport,
+            id=f"{fault.name}, {moment}, {transport}",
+            marks=MARKS[transport],
+        )
+        for fault, moment, transport in cells
     ]
 
 

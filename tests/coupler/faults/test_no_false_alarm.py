@@ -31,7 +31,7 @@ def slow(faulty, transport, seconds, computes, windows):
 @pytest.mark.parametrize("computes", [False, True], ids=["sleeps", "computes"])
 @pytest.mark.parametrize("transport", OVER)
 def test_windows_of_nine_seconds_and_one_of_forty_are_no_fault(faulty, transport, computes):
-    # Named are the first, whose usual time nobody knows, and the one beyond 3 x 9 + 5 s.
+    # The first window, without a known usual time, and the one above 3 x 9 + 5 s are named.
     run = slow(faulty, transport, [9.0, 9.0, 9.0, 40.0, 9.0], computes, 5)
     check_windows(run, 5, {0, 3})
 

@@ -21,12 +21,18 @@ LOADED = 3.0  # s that a loaded machine may add
 MARKS = {"zenoh": pytest.mark.zenoh, "mpi": pytest.mark.mpi}
 
 
-def cases(chosen):
+def cases(includes):
     """Parameters of a test."""
     return [
-        pytest.param(fault, moment, over, id=f"{fault.name}, {moment}, {over}", marks=MARKS[over])
-        for fault, moment, over in CASES
-        if chosen(fault.name, moment, over)
+        pytest.param(
+            fault,
+            moment,
+            transport,
+            id=f"{fault.name}, {moment}, {transport}",
+            marks=MARKS[transport],
+        )
+        for fault, moment, transport in CASES
+        if includes(fault.name, moment, transport)
     ]
 
 

@@ -39,7 +39,7 @@ SNAPSHOTS = ("--set", "output.snapshots=0.04")
 
 @pytest.fixture(scope="module")
 def mortal(tmp_path_factory):
-    """Start a scene whose second component dies as it is asked to."""
+    """Start a scene whose second component dies at a given moment."""
     started = []
 
     def start(pong="", restarts=2, ping="", arguments=()):
@@ -67,15 +67,15 @@ def undisturbed(mortal):
 
     @cache
     def run(scheme):
-        alone = mortal(restarts=0, arguments=("--set", f'scheme="{scheme}"', *SNAPSHOTS))
-        assert alone.wait() == 0, alone.err
-        return alone.folder
+        reference = mortal(restarts=0, arguments=("--set", f'scheme="{scheme}"', *SNAPSHOTS))
+        assert reference.wait() == 0, reference.err
+        return reference.folder
 
     return run
 
 
 def check_restarted(run, times=1):
-    """The run came to its end, said what happened, and left nothing."""
+    """The run came to its end, reported the restarts, and left nothing."""
     assert run.wait() == 0, run.err
     assert not run.left_processes() and not run.left_in_shared_memory()
     notes = run.results["notes"].get("pong", [])
@@ -101,9 +101,9 @@ def test_a_component_that_is_killed_takes_up_its_work_with_the_same_bits(
     mortal, undisturbed, moment
 ):
     windows = check_killed(mortal, undisturbed, moment, "serial")
-    # Those since the snapshots after windows 40 and 80, or since a state that was saved later.
-    most = {"later window": 20, "between": 40, "snapshot": 40, "end": 20}
-    assert windows <= most.get(moment, 0)
+    # Windows since the snapshots after windows 40 and 80, or since a state that was saved later.
+    limits = {"later window": 20, "between": 40, "snapshot": 40, "end": 20}
+    assert windows <= limits.get(moment, 0)
 
 
 @pytest.mark.parametrize(("moment", "scheme"), OTHER_SCHEMES)
@@ -160,8 +160,8 @@ def test_a_component_that_dies_too_often_ends_the_run(mortal):
 def test_what_would_occur_again_is_no_death(mortal, cause):
     run = mortal(f'fails_in = "step"\nfails_at = 21\nfails_by = "{cause}"')
     assert run.wait() == 3
-    words = {"exception": "asked to raise", "NaN": "must be finite"}[cause]
-    assert words in run.results["fault"]["cause"] and "started again" not in run.err
+    message = {"exception": "asked to raise", "NaN": "must be finite"}[cause]
+    assert message in run.results["fault"]["cause"] and "started again" not in run.err
 
 
 def test_a_process_that_does_not_repeat_the_same_bits_ends_the_run(mortal):
@@ -200,8 +200,8 @@ def test_a_component_of_which_a_rank_dies_takes_up_its_work(tmp_path, fails_in, 
 @pytest.mark.parametrize("transport", ["memory", "mpi"])
 def test_restarts_are_refused_where_no_process_ends_alone(tmp_path, capsys, transport):
     scene = write_scene(tmp_path, transport)
-    with pytest.raises(SystemExit) as ended:
+    with pytest.raises(SystemExit) as exit_info:
         main(["check", str(scene), "--set", "restarts=1"])
-    assert ended.value.code == 2
-    said = capsys.readouterr().err
-    assert f"scene.restarts must be 0 over the transport {transport}" in said
+    assert exit_info.value.code == 2
+    message = capsys.readouterr().err
+    assert f"scene.restarts must be 0 over the transport {transport}" in message

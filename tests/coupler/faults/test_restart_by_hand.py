@@ -29,7 +29,7 @@ class ByHand:
         self.scene = scene
 
     def join(self):
-        """Join, as the screen says."""
+        """Join by the command on the screen."""
         with open(self.log, "ab") as file:
             self.joined.append(subprocess.Popen(self.command, stdout=file, stderr=file))
         return self.joined[-1]
@@ -39,7 +39,7 @@ class ByHand:
         self.run.wait_until(lambda: self.log.read_text().count("step 50") == count, 60.0)
 
     def end(self):
-        """End all that is left."""
+        """End all processes that still run."""
         for process in self.joined:
             process.kill()
             process.wait()
@@ -65,15 +65,15 @@ def test_who_joined_by_hand_and_died_may_join_again(by_hand):
     first = scene.join()
     scene.wait_for_step(1)
     os.kill(first.pid, signal.SIGKILL)
-    other = scene.join()
+    replacement = scene.join()
     assert scene.run.wait() == 0, scene.run.err
-    assert other.wait(10.0) == 0
+    assert replacement.wait(10.0) == 0
     assert scene.run.out.count("pong is awaited: quintet join") == 2
     (note,) = scene.run.results["notes"]["pong"]
     assert "took over after" in note
-    alone = Started(scene.scene, out=scene.scene.parent / "alone")
-    assert alone.wait() == 0
-    assert same(scene.run.folder, alone.folder)
+    reference = Started(scene.scene, out=scene.scene.parent / "alone")
+    assert reference.wait() == 0
+    assert same(scene.run.folder, reference.folder)
 
 
 def test_who_joined_by_hand_and_stands_still_is_replaced(by_hand):
@@ -82,14 +82,14 @@ def test_who_joined_by_hand_and_stands_still_is_replaced(by_hand):
     scene.wait_for_step(1)
     os.kill(first.pid, signal.SIGSTOP)
     assert first.wait(20.0) == -signal.SIGKILL
-    other = scene.join()
+    replacement = scene.join()
     assert scene.run.wait() == 0, scene.run.err
-    assert other.wait(10.0) == 0
+    assert replacement.wait(10.0) == 0
     assert "pong stopped responding: process" in scene.run.err
     assert "it is awaited again (restart 1 of 1)" in scene.run.err
-    alone = Started(scene.scene, out=scene.scene.parent / "alone")
-    assert alone.wait() == 0
-    assert same(scene.run.folder, alone.folder)
+    reference = Started(scene.scene, out=scene.scene.parent / "alone")
+    assert reference.wait() == 0
+    assert same(scene.run.folder, reference.folder)
 
 
 def test_who_does_not_join_again_within_the_patience_ends_the_run(by_hand):

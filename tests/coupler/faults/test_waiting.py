@@ -1,4 +1,4 @@
-"""Who lets the others wait for a good reason is told of, and not ended."""
+"""A component that lets the others wait for a good reason is named, and not ended."""
 
 import pytest
 import toys
@@ -16,18 +16,18 @@ DOES = {  # while it waits
 }
 
 
-def check_waiting(run, by, seconds):
-    """The run came to its end, and said on the way who kept it waiting."""
+def check_waiting(run, reason, seconds):
+    """The run came to its end, and named the component that kept it waiting."""
     assert run.wait(seconds + 60.0) == 0, run.err
-    if by == "build":
+    if reason == "build":
         assert "keeps the others waiting" not in run.err
         return
-    window = 0 if by == "first" else 30
-    said = run.err.partition("quintet: pong keeps the others waiting for ")[2]
-    assert f"in window {window}" in said and DOES[by] in said
-    if by != "disk":  # there the system does not let it answer
-        assert "toy_waits.py" in said
-    assert "quintet: pong goes on after " in said
+    window = 0 if reason == "first" else 30
+    message = run.err.partition("quintet: pong keeps the others waiting for ")[2]
+    assert f"in window {window}" in message and DOES[reason] in message
+    if reason != "disk":  # there the system does not let it answer
+        assert "toy_waits.py" in message
+    assert "quintet: pong goes on after " in message
     assert not run.left_processes() and not run.left_in_shared_memory()
 
 
@@ -47,10 +47,10 @@ def test_a_build_that_computes_may_take_longer_than_its_patience(faulty):
 
 @pytest.mark.full
 @pytest.mark.parametrize("transport", OVER)
-@pytest.mark.parametrize("by", [*DOES, "build"])
-def test_half_a_minute_of_waiting_is_no_fault(faulty, transport, by):
-    run = faulty("Waiting", transport, f'fails_by = "{by}"\nseconds = 30.0')
-    check_waiting(run, by, 30.0)
+@pytest.mark.parametrize("reason", [*DOES, "build"])
+def test_half_a_minute_of_waiting_is_no_fault(faulty, transport, reason):
+    run = faulty("Waiting", transport, f'fails_by = "{reason}"\nseconds = 30.0')
+    check_waiting(run, reason, 30.0)
 
 
 @pytest.mark.full
