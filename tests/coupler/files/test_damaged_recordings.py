@@ -1,4 +1,4 @@
-"""A recording that was changed or cut is noticed by all that read it, or reads as it was."""
+"""Every reader of a recording notices a change or cut, or reads the recording as it was."""
 
 import io
 import os
@@ -49,67 +49,77 @@ def differs(path, whole):
     return compare(whole, path) is not None
 
 
-def loads_other(path, whole):
+def loads_differently(path, whole):
     """As expectations and Python read it."""
-    with Recording(whole) as one, Recording(path) as other:
-        assert (one.run, one.scene, one.names) == (other.run, other.scene, other.names)
-        for name in one.names:
-            for key in one.fields(name):
-                assert (one.history(name, key, 2) == other.history(name, key, 2)).all()
-                assert one.field(name, key).tobytes() == other.field(name, key).tobytes()
-            assert (one.times(name) == other.times(name)).all()
+    with Recording(whole) as original, Recording(path) as damaged:
+        assert (original.run, original.scene, original.names) == (
+            damaged.run,
+            damaged.scene,
+            damaged.names,
+        )
+        for name in original.names:
+            for key in original.fields(name):
+                assert (original.history(name, key, 2) == damaged.history(name, key, 2)).all()
+                assert original.field(name, key).tobytes() == damaged.field(name, key).tobytes()
+            assert (original.times(name) == damaged.times(name)).all()
     return False
 
 
-def replays_other(path, whole):
+def replays_differently(path, whole):
     """As a scene that replays a component is read and run."""
     for name in ("cubes", "water"):
-        params = [ReplayParams(recording=str(one), component=name) for one in (whole, path)]
+        files = (whole, path)
+        params = [ReplayParams(recording=str(file), component=name) for file in files]
         plans, starts = (list(map(of, params)) for of in (recorded_plan, recorded_start))
         assert (plans[0].times == plans[1].times).all()
         assert (
             plans[0].items == plans[1].items and plans[0].bytes_per_item == plans[1].bytes_per_item
         )
         assert all((starts[0][key] == starts[1][key]).all() for key in starts[0])
-        one, other = map(Replay, params)
-        assert one.gives == other.gives and (one.stable == other.stable).all()
-        assert one.rows.keys() == other.rows.keys() and one.static.keys() == other.static.keys()
-        assert all(one.rows[key].tobytes() == other.rows[key].tobytes() for key in one.rows)
+        original, damaged = map(Replay, params)
+        assert original.gives == damaged.gives and (original.stable == damaged.stable).all()
+        assert (
+            original.rows.keys() == damaged.rows.keys()
+            and original.static.keys() == damaged.static.keys()
+        )
+        assert all(
+            original.rows[key].tobytes() == damaged.rows[key].tobytes() for key in original.rows
+        )
     return False
 
 
-def goes_on_otherwise(path, whole):
-    """As a run goes on that was interrupted before its last rows."""
+def resumes_differently(path, whole):
+    """As a run that was interrupted before its last rows goes on."""
     recorder = Recorder.resume(path, ROWS - MORE)
     with recorder:
         add(recorder, ROWS - MORE, ROWS)
     return differs(path, whole)
 
 
-READERS = [differs, loads_other, replays_other, goes_on_otherwise]
+READERS = [differs, loads_differently, replays_differently, resumes_differently]
 
 
-def noticed(read, path, whole):
-    """Whether damage is told in a sentence; if not, all must read as it was."""
+def is_noticed(read, path, whole):
+    """Whether the reader reports the damage in a sentence; if not, it must read as before."""
     try:
         with redirect_stderr(io.StringIO()):
-            wrong = read(path, whole)
+            is_different = read(path, whole)
     except SceneError as error:
         assert str(path) in str(error) and len(error.mistakes) == 1
         return True
-    assert not wrong
+    assert not is_different
     return False
 
 
 def try_bits(read, whole, path, count, seed=0):
     """Flip bits of a recording one by one; return how many were noticed."""
-    data, random, found = whole.read_bytes(), np.random.default_rng(seed), 0
-    for number in random.integers(8 * len(data), size=count):
-        changed = bytearray(data)
-        changed[number // 8] ^= 1 << int(number % 8)
-        path.write_bytes(changed)
-        found += noticed(read, path, whole)
-    return found
+    data, random, noticed = whole.read_bytes(), np.random.default_rng(seed), 0
+    for bit in random.integers(8 * len(data), size=count):
+        damaged = bytearray(data)
+        damaged[bit // 8] ^= 1 << int(bit % 8)
+        path.write_bytes(damaged)
+        noticed += is_noticed(read, path, whole)
+    return noticed
 
 
 @pytest.mark.parametrize(
@@ -127,12 +137,12 @@ def test_every_flipped_bit_is_noticed_or_harmless(whole, tmp_path, read, count):
 @pytest.mark.parametrize("read", READERS)
 def test_a_recording_that_was_cut_or_torn_is_noticed(whole, tmp_path, read):
     data, path = whole.read_bytes(), tmp_path / "r.h5"
-    for part in (0, 1, 100, len(data) // 2, len(data) - 1):
-        path.write_bytes(data[:part])
-        assert noticed(read, path, whole)
+    for length in (0, 1, 100, len(data) // 2, len(data) - 1):
+        path.write_bytes(data[:length])
+        assert is_noticed(read, path, whole)
     for place in (len(data) // 3, 2 * len(data) // 3):  # a block that never came to the disk
         path.write_bytes(data[:place] + bytes(4096) + data[place + 4096 :])
-        noticed(read, path, whole)
+        is_noticed(read, path, whole)
 
 
 def test_the_window_that_was_changed_is_named(whole, tmp_path):
@@ -163,10 +173,10 @@ def test_a_recording_of_before_is_read_with_a_note_and_sealed_when_a_run_goes_on
         del file.attrs[CHECK]
         for group in file["components"].values():
             del group.attrs[CHECK], group[ROW_CHECKS]
-    assert not differs(path, whole) and not replays_other(path, whole)
+    assert not differs(path, whole) and not replays_differently(path, whole)
     assert capsys.readouterr().err.count(f"recording {path} has no checksums") == 1
-    assert not goes_on_otherwise(path, whole)
+    assert not resumes_differently(path, whole)
     with h5py.File(path, "r+") as file:
         file["components/water/fields/surface_load.force"][7, 0, 0] += 1e-9
-    assert noticed(differs, path, whole)
+    assert is_noticed(differs, path, whole)
     assert os.path.getsize(path) < 2 * os.path.getsize(whole)

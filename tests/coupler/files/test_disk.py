@@ -18,15 +18,15 @@ def test_every_bit_and_every_length_of_a_sealed_file_matters(tmp_path):
     path = tmp_path / "a"
     path.write_bytes(bytes(range(64)))
     seal(path)
-    good = path.read_bytes()
+    sealed = path.read_bytes()
     assert is_sound(path)
-    for bit in range(8 * len(good)):
-        bad = bytearray(good)
-        bad[bit // 8] ^= 1 << bit % 8
-        path.write_bytes(bad)
+    for bit in range(8 * len(sealed)):
+        flipped = bytearray(sealed)
+        flipped[bit // 8] ^= 1 << bit % 8
+        path.write_bytes(flipped)
         assert not is_sound(path)
-    for length in range(len(good)):
-        path.write_bytes(good[:length])
+    for length in range(len(sealed)):
+        path.write_bytes(sealed[:length])
         assert not is_sound(path)
 
 
@@ -36,14 +36,16 @@ def test_a_file_that_cannot_be_written_whole_stays_as_it_was(tmp_path, monkeypat
     monkeypatch.setattr(os, "fsync", no_room)
     with pytest.raises(DiskError, match=r"a\.json: it cannot be written, as the disk at / is full"):
         write_whole(path, "after")
-    assert path.read_text() == "before" and [one.name for one in tmp_path.iterdir()] == ["a.json"]
+    assert path.read_text() == "before" and [entry.name for entry in tmp_path.iterdir()] == [
+        "a.json"
+    ]
 
 
 def test_what_must_be_kept_goes_elsewhere_where_there_is_no_room(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(os, "fsync", no_room)
-    found = write_at_last(tmp_path / "results.json", "{}")
-    assert found.read_text() == "{}" and not list(tmp_path.iterdir())
-    assert f"It is kept as {found}." in capsys.readouterr().err
+    path = write_at_last(tmp_path / "results.json", "{}")
+    assert path.read_text() == "{}" and not list(tmp_path.iterdir())
+    assert f"It is kept as {path}." in capsys.readouterr().err
 
 
 def test_a_table_has_whole_rows_only(tmp_path, monkeypatch):
@@ -52,13 +54,13 @@ def test_a_table_has_whole_rows_only(tmp_path, monkeypatch):
     table.write(["a", 1])
     assert table.flush() == path.stat().st_size == 5
     table.write(["b", 2])
-    monkeypatch.setattr(os, "pwrite", lambda file, data, at: no_room() if at > 5 else 3)
+    monkeypatch.setattr(os, "pwrite", lambda file, data, offset: no_room() if offset > 5 else 3)
     with pytest.raises(DiskError):
         table.flush()
     monkeypatch.undo()
     table.close()
     assert path.read_bytes() == b"a,1\r\n"
-    again = TableFile(path, 5)
-    again.write(["c", 3])
-    again.close()
+    reopened = TableFile(path, 5)
+    reopened.write(["c", 3])
+    reopened.close()
     assert path.read_bytes() == b"a,1\r\nc,3\r\n"

@@ -1,4 +1,4 @@
-"""The recording gives back what went in, bit for bit."""
+"""The recording gives back the recorded values, bit for bit."""
 
 import os
 import signal
@@ -38,8 +38,8 @@ def test_recording_gives_back_every_row(tmp_path, rows):
     with Recording(tmp_path) as recording:
         assert np.array_equal(recording.times("cubes"), 0.1 * np.arange(rows))
         for k in range(rows):
-            found = recording.row("cubes", k)
-            assert all(np.array_equal(found[key], array) for key, array in _row(k).items())
+            row = recording.row("cubes", k)
+            assert all(np.array_equal(row[key], array) for key, array in _row(k).items())
         if rows:
             assert recording.field("water", "surface_load.force").shape == (rows, 5, 3)
             history = recording.history("water", "surface_load.force", 4)
@@ -59,24 +59,24 @@ def test_recording_gives_back_ports_static_scene_and_order(tmp_path):
 
 
 def test_recording_keeps_the_bits_of_numbers_that_compare_oddly(tmp_path):
-    odd = np.array([[-0.0, np.nan, -np.inf], [5e-324, np.nextafter(1, 2), -np.nan]])
+    values = np.array([[-0.0, np.nan, -np.inf], [5e-324, np.nextafter(1, 2), -np.nan]])
     with Recorder(tmp_path / "o.h5", "", "") as recorder:
         recorder.component("water", (SURFACE_LOAD,), {})
-        recorder.add("water", Instant(0.0, 0), {"surface_load.force": odd})
+        recorder.add("water", Instant(0.0, 0), {"surface_load.force": values})
     with Recording(tmp_path / "o.h5") as recording:
-        assert recording.row("water", 0)["surface_load.force"].tobytes() == odd.tobytes()
+        assert recording.row("water", 0)["surface_load.force"].tobytes() == values.tobytes()
 
 
 def test_recording_holds_rows_larger_than_a_batch_and_items_that_are_none(tmp_path):
-    big = np.random.default_rng(1).normal(size=(400_000, 3))
+    forces = np.random.default_rng(1).normal(size=(400_000, 3))
     with Recorder(tmp_path / "big.h5", "", "") as recorder:
         recorder.component("water", (SURFACE_LOAD,), {})
         recorder.component("dust", (SURFACE_LOAD,), {})
         for k in range(2):
-            recorder.add("water", Instant(float(k), k), {"surface_load.force": big + k})
-            recorder.add("dust", Instant(float(k), k), {"surface_load.force": big[:0]})
+            recorder.add("water", Instant(float(k), k), {"surface_load.force": forces + k})
+            recorder.add("dust", Instant(float(k), k), {"surface_load.force": forces[:0]})
     with Recording(tmp_path / "big.h5") as recording:
-        assert np.array_equal(recording.row("water", 1)["surface_load.force"], big + 1)
+        assert np.array_equal(recording.row("water", 1)["surface_load.force"], forces + 1)
         assert recording.row("dust", 1)["surface_load.force"].shape == (0, 3)
 
 
@@ -103,8 +103,8 @@ recorder.flush()
 recorder.add("water", Instant(70, 70), {{"surface_load.force": np.zeros((4, 3))}})
 os.kill(os.getpid(), signal.SIGKILL)
 """
-    killed = subprocess.run([sys.executable, "-c", script], env=os.environ, check=False)
-    assert killed.returncode == -signal.SIGKILL
+    result = subprocess.run([sys.executable, "-c", script], env=os.environ, check=False)
+    assert result.returncode == -signal.SIGKILL
     with Recording(tmp_path) as recording:
         assert len(recording.times("water")) == 70
         assert (recording.row("water", 69)["surface_load.force"] == 69.0).all()

@@ -1,4 +1,4 @@
-"""The picture files: what goes in comes out, through our reader and through VTK's."""
+"""The picture files: our reader and VTK's read back the written views."""
 
 import os
 import signal
@@ -44,13 +44,13 @@ def vtk_steps():
         reader = hdf.vtkHDFReader()
         reader.SetFileName(str(path))
         reader.UpdateInformation()
-        found = {}
+        steps = {}
         for k in order:
             reader.SetStep(k)
             reader.Update()
             output = reader.GetOutput()
             data = output.GetPointData()
-            found[k] = {
+            steps[k] = {
                 "time": reader.GetTimeValue(),
                 "points": vtk_to_numpy(output.GetPoints().GetData()),
                 "velocity": vtk_to_numpy(data.GetArray("velocity")),
@@ -60,7 +60,7 @@ def vtk_steps():
                 "corners": vtk_to_numpy(output.GetPolys().GetConnectivityArray()),
                 "begins": vtk_to_numpy(output.GetPolys().GetOffsetsArray()),
             }
-        return reader.GetNumberOfSteps(), found
+        return reader.GetNumberOfSteps(), steps
 
     return read
 
@@ -68,33 +68,33 @@ def vtk_steps():
 def test_vtk_reads_each_step_of_a_cloud_whose_number_of_points_changes(tmp_path, vtk_steps):
     views = _views((5, 7, 7, 5, 30, 6))
     _write(tmp_path / "a.vtkhdf", views)
-    count, found = vtk_steps(tmp_path / "a.vtkhdf", (3, 0, 5, 4, 2, 1))
+    count, steps = vtk_steps(tmp_path / "a.vtkhdf", (3, 0, 5, 4, 2, 1))
     assert count == len(views)
     for k, view in enumerate(views):
         for key in ("points", "velocity", "pressure"):
-            assert np.array_equal(found[k][key], view[key].astype(np.float32))
-        assert found[k]["time"] == 0.1 * k
-        assert np.array_equal(found[k]["vertices"], np.arange(len(view["points"])))
-        assert np.array_equal(found[k]["ends"], np.arange(len(view["points"]) + 1))
-        assert not len(found[k]["corners"])
+            assert np.array_equal(steps[k][key], view[key].astype(np.float32))
+        assert steps[k]["time"] == 0.1 * k
+        assert np.array_equal(steps[k]["vertices"], np.arange(len(view["points"])))
+        assert np.array_equal(steps[k]["ends"], np.arange(len(view["points"]) + 1))
+        assert not len(steps[k]["corners"])
 
 
 def test_vtk_reads_moving_polygons_with_triangles_among_them(tmp_path, vtk_steps):
     _write(tmp_path / "b.vtkhdf", _views((4, 4, 6), CELLS))
-    _, found = vtk_steps(tmp_path / "b.vtkhdf", (2, 0, 1))
+    _, steps = vtk_steps(tmp_path / "b.vtkhdf", (2, 0, 1))
     for k in range(3):
-        assert found[k]["corners"].tolist() == [0, 1, 2, 3, 0, 1, 2]
-        assert found[k]["begins"].tolist() == [0, 4, 7]
-        assert not len(found[k]["vertices"])
+        assert steps[k]["corners"].tolist() == [0, 1, 2, 3, 0, 1, 2]
+        assert steps[k]["begins"].tolist() == [0, 4, 7]
+        assert not len(steps[k]["vertices"])
 
 
 def test_vtk_reads_more_steps_than_one_block_of_the_tables(tmp_path, vtk_steps):
     views = _views([2 + k % 3 for k in range(1100)])
     _write(tmp_path / "c.vtkhdf", views)
-    count, found = vtk_steps(tmp_path / "c.vtkhdf", (1099, 1024, 1023))
+    count, steps = vtk_steps(tmp_path / "c.vtkhdf", (1099, 1024, 1023))
     assert count == 1100
-    for k in found:
-        assert np.array_equal(found[k]["points"], views[k]["points"].astype(np.float32))
+    for k in steps:
+        assert np.array_equal(steps[k]["points"], views[k]["points"].astype(np.float32))
 
 
 @pytest.mark.parametrize("cells", [None, CELLS])
@@ -103,11 +103,11 @@ def test_a_step_reads_back_as_it_was_appended(tmp_path, cells):
     _write(tmp_path / "d.vtkhdf", views)
     assert np.array_equal(times(tmp_path / "d.vtkhdf"), 0.1 * np.arange(len(views)))
     for k, view in enumerate(views):
-        time, found = read_step(tmp_path / "d.vtkhdf", k)
-        assert time == 0.1 * k and found.keys() == view.keys()
+        time, step = read_step(tmp_path / "d.vtkhdf", k)
+        assert time == 0.1 * k and step.keys() == view.keys()
         for key, array in view.items():
-            wanted = array if key == "cells" else array.astype(np.float32)
-            assert np.array_equal(found[key], wanted)
+            expected = array if key == "cells" else array.astype(np.float32)
+            assert np.array_equal(step[key], expected)
 
 
 def test_a_picture_file_may_be_read_while_it_grows(tmp_path):
@@ -116,9 +116,9 @@ def test_a_picture_file_may_be_read_while_it_grows(tmp_path):
     file.append(0.0, _views()[0])
     importing = "from quintet.coupler.files.vtkhdf_reader import times"
     script = f"{importing}; print(len(times({str(path)!r})))"
-    read = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True)
+    result = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True)
     file.close()
-    assert read.stdout.strip() == "1", read.stderr
+    assert result.stdout.strip() == "1", result.stderr
 
 
 def test_a_killed_writer_leaves_every_appended_step(tmp_path, vtk_steps):
@@ -132,28 +132,28 @@ for k in range(9):
     file.append(0.5 * k, dict(points=ones, velocity=ones, pressure=ones[:, 0]))
 os.kill(os.getpid(), signal.SIGKILL)
 """
-    killed = subprocess.run([sys.executable, "-c", script], env=os.environ, check=False)
-    assert killed.returncode == -signal.SIGKILL
-    count, found = vtk_steps(path, (8, 0))
+    result = subprocess.run([sys.executable, "-c", script], env=os.environ, check=False)
+    assert result.returncode == -signal.SIGKILL
+    count, steps = vtk_steps(path, (8, 0))
     assert count == len(times(path)) == 9
-    assert (found[8]["velocity"] == 8.0).all() and len(found[8]["velocity"]) == 58
+    assert (steps[8]["velocity"] == 8.0).all() and len(steps[8]["velocity"]) == 58
     assert read_step(path, 8)[0] == 4.0
 
 
 def test_a_view_that_changes_its_names_shapes_or_cells_is_refused(tmp_path):
     file = VtkHdf(tmp_path / "g.vtkhdf")
-    good = _views((4,), CELLS)[0]
-    file.append(0.0, good)
-    for wrong, word in (
-        ({"points": good["points"]}, "is missing"),
-        ({**good, "heat": good["pressure"]}, "heat appeared"),
-        ({**good, "velocity": good["points"][:, :2]}, "velocity must keep"),
-        ({**good, "pressure": np.zeros(3)}, "pressure must have one row"),
-        ({"velocity": good["velocity"]}, "must have points"),
-        ({k: v[:3] for k, v in good.items()}, "cells use 4 points"),
+    view = _views((4,), CELLS)[0]
+    file.append(0.0, view)
+    for wrong_view, word in (
+        ({"points": view["points"]}, "is missing"),
+        ({**view, "heat": view["pressure"]}, "heat appeared"),
+        ({**view, "velocity": view["points"][:, :2]}, "velocity must keep"),
+        ({**view, "pressure": np.zeros(3)}, "pressure must have one row"),
+        ({"velocity": view["velocity"]}, "must have points"),
+        ({k: v[:3] for k, v in view.items()}, "cells use 4 points"),
     ):
         with pytest.raises(PortError, match=word):
-            file.append(0.1, wrong)
+            file.append(0.1, wrong_view)
     file.close()
     assert len(times(tmp_path / "g.vtkhdf")) == 1
 
@@ -167,8 +167,8 @@ def test_a_file_goes_on_with_another_number_of_ranks(tmp_path, begins_with_ranks
     _write(tmp_path / "of_one.vtkhdf", views)
     for k in range(2):
         _, step = read_step(tmp_path / "of_two.vtkhdf", k)
-        _, same = read_step(tmp_path / "of_one.vtkhdf", k)
-        assert all((step[key] == same[key]).all() for key in same)
+        _, plain_step = read_step(tmp_path / "of_one.vtkhdf", k)
+        assert all((step[key] == plain_step[key]).all() for key in plain_step)
         if begins_with_ranks:
             assert (step["rank"] == (ranks["rank"] if k == 0 else 0.0)).all()
         else:
@@ -207,17 +207,17 @@ def test_fields_over_cells_and_loose_points_read_back(tmp_path):
     views = [_mixed(k) for k in range(3)]
     _write(tmp_path / "a.vtkhdf", views)
     for k, view in enumerate(views):
-        found = read_step(tmp_path / "a.vtkhdf", k)[1]
-        assert found.keys() == view.keys()
-        assert all(np.array_equal(found[key], np.float32(view[key])) for key in view)
+        step = read_step(tmp_path / "a.vtkhdf", k)[1]
+        assert step.keys() == view.keys()
+        assert all(np.array_equal(step[key], np.float32(view[key])) for key in view)
 
 
 def test_units_and_scene_read_back_in_the_order_of_the_view(tmp_path):
     file = VtkHdf(tmp_path / "a.vtkhdf", UNITS | {"radius": "m"}, "a – scene")
     file.append(0.0, _mixed(0) | {"unknown": np.zeros(10)})
     file.close()
-    found = units(tmp_path / "a.vtkhdf")
-    assert list(found.items()) == [
+    read_units = units(tmp_path / "a.vtkhdf")
+    assert list(read_units.items()) == [
         ("velocity", "m/s"), ("stress", "Pa"), ("radius", "m"), ("unknown", "")
     ]  # fmt: skip
     assert scene(tmp_path / "a.vtkhdf") == "a – scene"
@@ -248,9 +248,9 @@ def test_pyvista_opens_a_cloud_at_all_steps_with_its_units(tmp_path):
     for k, view in enumerate(views):
         file.append(0.1 * k, view)
     file.close()
-    found = list(_pyvista_steps(tmp_path / "a.vtkhdf"))
-    assert [time for time, _ in found] == [0.1 * k for k in range(6)]
-    for view, (_, mesh) in zip(views, found, strict=True):
+    steps = list(_pyvista_steps(tmp_path / "a.vtkhdf"))
+    assert [time for time, _ in steps] == [0.1 * k for k in range(6)]
+    for view, (_, mesh) in zip(views, steps, strict=True):
         assert mesh.n_points == mesh.n_verts == len(view["points"])
         assert np.array_equal(mesh["pressure"], view["pressure"].astype(np.float32))
         assert list(mesh.field_data["units"]) == ["points m; velocity m/s; pressure Pa"]
