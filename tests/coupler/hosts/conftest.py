@@ -50,7 +50,7 @@ def host_certificates(tmp_path_factory):
 
 @pytest.fixture
 def network():
-    """Make hosts; all are removed in the end, with what runs there."""
+    """Make hosts; at the end all are removed, and their processes killed."""
     if reason := lacking():
         pytest.skip(reason)
     networks = []
@@ -92,7 +92,7 @@ class SpreadRun:
         return self.scene.parent / f"{name}-{host.name}.log"
 
     def join(self, name, host):
-        """Join a component on a host, as the screen says."""
+        """Join a component on a host by the command on the screen."""
         command = [
             *CLI,
             "join",
@@ -110,22 +110,22 @@ class SpreadRun:
         self.run.wait_until(lambda: "step 50" in log.read_text(), seconds)
 
     def wait_for_words(self, words, seconds):
-        """Wait until the screen says something; return the time that it took."""
-        began = time.monotonic()
+        """Wait until words appear on the screen; return the time that it took."""
+        start = time.monotonic()
         self.run.wait_until(lambda: words in self.said.read_text(), seconds)
-        return time.monotonic() - began
+        return time.monotonic() - start
 
     def wait(self, seconds=120.0):
-        """Wait for the end; return the exit status, and what the screen said."""
+        """Wait for the end; return the exit status and the text of the screen."""
         status = self.run.wait(seconds)
         return status, self.said.read_text()
 
     def stop(self, name):
-        """Stop all threads of a component (SIGSTOP), and what is between it and the tests."""
+        """Stop all threads of a component (SIGSTOP), and the processes between it and the tests."""
         os.killpg(self.joined[name].pid, signal.SIGSTOP)
 
     def go_on(self, name):
-        """End the stop."""
+        """Let the stopped processes go on."""
         os.killpg(self.joined[name].pid, signal.SIGCONT)
 
 

@@ -21,23 +21,23 @@ def open_port(name, namespace):
     """Make a device, and give it to a host."""
     port = os.open("/dev/net/tun", os.O_RDWR | os.O_NONBLOCK)
     fcntl.ioctl(port, TUNSETIFF, struct.pack("16sH", name.encode(), IFF_TAP | IFF_NO_PI))
-    move = ["ip", "link", "set", name, "netns", namespace, "name", "eth0"]
-    subprocess.run(move, check=True)
+    command = ["ip", "link", "set", name, "netns", namespace, "name", "eth0"]
+    subprocess.run(command, check=True)
     return port
 
 
 def forward(ports, delay, loss):
     """Forward every frame to all other ports, late, or not at all."""
-    late, number, lots = [], 0, random.Random(1)
+    queue, number, generator = [], 0, random.Random(1)
     while True:
-        wait = max(0.0, late[0][0] - time.monotonic()) if late else None
-        for port in select.select(ports, [], [], wait)[0]:
+        timeout = max(0.0, queue[0][0] - time.monotonic()) if queue else None
+        for port in select.select(ports, [], [], timeout)[0]:
             frame = os.read(port, LONGEST)
-            if lots.random() >= loss:
+            if generator.random() >= loss:
                 number += 1
-                heapq.heappush(late, (time.monotonic() + delay, number, port, frame))
-        while late and late[0][0] <= time.monotonic():
-            _, _, origin, frame = heapq.heappop(late)
+                heapq.heappush(queue, (time.monotonic() + delay, number, port, frame))
+        while queue and queue[0][0] <= time.monotonic():
+            _, _, origin, frame = heapq.heappop(queue)
             for port in ports:
                 if port != origin:
                     try:
@@ -48,6 +48,6 @@ def forward(ports, delay, loss):
 
 if __name__ == "__main__":
     seconds, share, *places = sys.argv[1:]
-    opened = [open_port(*place) for place in zip(places[::2], places[1::2], strict=True)]
+    opened_ports = [open_port(*place) for place in zip(places[::2], places[1::2], strict=True)]
     print("ready", flush=True)
-    forward(opened, float(seconds), float(share))
+    forward(opened_ports, float(seconds), float(share))

@@ -17,15 +17,15 @@ SWITCH = Path(__file__).with_name("lossy_switch.py")
 
 
 def lacking():
-    """Say why no namespaces can be made here; "" where they can."""
+    """Reason why no namespaces can be made here, or ""."""
     if os.geteuid() != 0:
         return "only root may make network namespaces"
     if missing := [name for name in NEEDED if shutil.which(name) is None]:
         return f"needs {', '.join(missing)}"
     name = f"q{os.getpid()}-try"
-    made = subprocess.run(["ip", "netns", "add", name], capture_output=True, text=True)
+    result = subprocess.run(["ip", "netns", "add", name], capture_output=True, text=True)
     subprocess.run(["ip", "netns", "delete", name], capture_output=True)
-    return f"network namespaces are refused: {made.stderr.strip()}" if made.returncode else ""
+    return f"network namespaces are refused: {result.stderr.strip()}" if result.returncode else ""
 
 
 def ip(*words):
@@ -41,9 +41,9 @@ def remove_left():
 
 
 def end_inside(namespace):
-    """Kill what runs in a namespace, and remove it."""
-    listed = subprocess.run(["ip", "netns", "pids", namespace], capture_output=True, text=True)
-    for pid in listed.stdout.split():
+    """Kill the processes in a namespace, and remove it."""
+    result = subprocess.run(["ip", "netns", "pids", namespace], capture_output=True, text=True)
+    for pid in result.stdout.split():
         with contextlib.suppress(ProcessLookupError):
             os.kill(int(pid), signal.SIGKILL)
     subprocess.run(["ip", "netns", "delete", namespace], capture_output=True)
@@ -86,7 +86,7 @@ class Host:
 
 
 class Network:
-    """Some hosts on a switch; a cut host keeps its address, and hears nothing.
+    """Some hosts on a switch; a cut host keeps its address, and receives no frame.
 
     Parameters
     ----------
@@ -117,13 +117,13 @@ class Network:
             raise
 
     def _make_bridge(self):
-        inside = ("-n", self.switch.namespace)
-        ip(*inside, "link", "add", "switch", "type", "bridge")
-        ip(*inside, "link", "set", "switch", "up")
+        prefix = ("-n", self.switch.namespace)
+        ip(*prefix, "link", "add", "switch", "type", "bridge")
+        ip(*prefix, "link", "set", "switch", "up")
         for host in self.hosts:
             peer = ("peer", "name", "eth0", "netns", host.namespace)
-            ip(*inside, "link", "add", host.port, "type", "veth", *peer)
-            ip(*inside, "link", "set", host.port, "master", "switch", "up")
+            ip(*prefix, "link", "add", host.port, "type", "veth", *peer)
+            ip(*prefix, "link", "set", host.port, "master", "switch", "up")
 
     def _begin_forwarder(self, delay, loss):
         command = [sys.executable, str(SWITCH), str(delay), str(loss)]
@@ -132,7 +132,7 @@ class Network:
         assert self.forwarder.stdout.readline() == b"ready\n"
 
     def cut(self, host, link_down=False):
-        """Cut a host off: nothing arrives any more, or its link goes down."""
+        """Cut a host off: frames no longer arrive, or its link goes down."""
         if link_down:
             ip("-n", self.switch.namespace, "link", "set", host.port, "down")
         else:
@@ -143,7 +143,7 @@ class Network:
         ip("-n", self.switch.namespace, "link", "set", host.port, "master", "switch", "up")
 
     def remove(self):
-        """Remove all of it, and end what runs there."""
+        """Remove the network, and end the processes in it."""
         if self.forwarder:
             self.forwarder.kill()
             self.forwarder.communicate()
