@@ -1,4 +1,4 @@
-"""What it saves that ranks get only the rows of ports that they need.
+"""The time saved when ranks get only the rows of ports that they need.
 
 ``python tests/coupler/launch/rank_rows.py 200000 2 4`` runs a component of 2 and of 4 ranks with an
 interface of so many items, and prints the time and the processor time of a window.
@@ -54,12 +54,12 @@ def main(items, *sizes):
                 status = run.wait(300.0)
                 assert status in (0, 1), run.err  # 1: such loads want shorter windows
                 timing = run.results["timing"]
-                used, each = timing["components"]["shared"], 1e3 / WINDOWS
+                usage, unit = timing["components"]["shared"], 1e3 / WINDOWS
                 print(
                     f"{ranks} ranks, each gets {'all rows' if all_rows else 'its rows'}: "
-                    f"exchange {each * timing['exchange']:.1f} ms a window, "
-                    f"compute {each * used['compute']:.1f} ms, cpu {each * used['cpu']:.1f} ms, "
-                    f"{used['memory'] / 1e6:.0f} MB",
+                    f"exchange {unit * timing['exchange']:.1f} ms a window, "
+                    f"compute {unit * usage['compute']:.1f} ms, cpu {unit * usage['cpu']:.1f} ms, "
+                    f"{usage['memory'] / 1e6:.0f} MB",
                     flush=True,
                 )
 

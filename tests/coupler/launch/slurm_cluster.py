@@ -94,8 +94,8 @@ class Cluster:
 
     def call(self, *command, cwd=None):
         """Output of a command."""
-        done = subprocess.run(command, env=self.env, cwd=cwd, capture_output=True, text=True)
-        return done.stdout + done.stderr
+        result = subprocess.run(command, env=self.env, cwd=cwd, capture_output=True, text=True)
+        return result.stdout + result.stderr
 
     def jobs(self):
         """Numbers of the jobs that wait or run."""

@@ -15,9 +15,9 @@ NAMES = ("authority", "coupler", "ping", "pong")
 
 
 def run(*arguments):
-    with pytest.raises(SystemExit) as ended:
+    with pytest.raises(SystemExit) as exit_info:
         main(["certificates", *map(str, arguments)])
-    return ended.value.code
+    return exit_info.value.code
 
 
 @pytest.fixture
@@ -34,17 +34,17 @@ def test_a_scene_gets_an_authority_and_a_certificate_for_each_name(scene, tmp_pa
     )
     assert {path.stat().st_mode & 0o777 for path in out.iterdir()} == {0o600}
     assert [common_name(str(out / f"{name}.pem")) for name in NAMES] == list(NAMES)
-    said = capsys.readouterr().out
+    output = capsys.readouterr().out
     end = datetime.date.today() + datetime.timedelta(days=30)
-    assert f"certificates for coupler, ping, pong, valid until {end} (30 days)" in said
-    assert f"--tls {out}/authority.pem {out}/ping.pem {out}/ping.key" in said
+    assert f"certificates for coupler, ping, pong, valid until {end} (30 days)" in output
+    assert f"--tls {out}/authority.pem {out}/ping.pem {out}/ping.key" in output
     context = ssl.SSLContext(ssl.PROTOCOL_TLS_CLIENT)
     context.load_verify_locations(out / "authority.pem")
     for name in NAMES[1:]:
         context.load_cert_chain(out / f"{name}.pem", out / f"{name}.key")
-    about = ssl._ssl._test_decode_cert(str(out / "coupler.pem"))
+    certificate = ssl._ssl._test_decode_cert(str(out / "coupler.pem"))
     assert {("DNS", "localhost"), ("DNS", "node1"), ("IP Address", "10.0.0.1")} <= set(
-        about["subjectAltName"]
+        certificate["subjectAltName"]
     )
 
 

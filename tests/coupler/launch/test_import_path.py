@@ -18,7 +18,7 @@ COMMAND = Path(sys.executable).with_name("quintet")
 
 
 @pytest.fixture
-def here(tmp_path, monkeypatch):
+def current_folder(tmp_path, monkeypatch):
     """A current folder with files that must not be run."""
     for name in NAMES:
         (tmp_path / f"{name}.py").write_text(f"raise SystemExit('{name} of the current folder')\n")
@@ -26,64 +26,68 @@ def here(tmp_path, monkeypatch):
     return tmp_path
 
 
-def ran(*arguments):
-    """Run a command, started as from a shell; return its status and all that it said."""
-    plain = {key: value for key, value in os.environ.items() if key != "PYTHONPATH"}
-    found = subprocess.run(
-        [COMMAND, *map(str, arguments)], capture_output=True, text=True, env=plain
+def run_command(*arguments):
+    """Run a command, started as from a shell; return its status and its output."""
+    environment = {key: value for key, value in os.environ.items() if key != "PYTHONPATH"}
+    result = subprocess.run(
+        [COMMAND, *map(str, arguments)], capture_output=True, text=True, env=environment
     )
-    return found.returncode, found.stdout + found.stderr
+    return result.returncode, result.stdout + result.stderr
 
 
-def briefly(scene):
+def short_run(scene):
     """Run a scene that comes with quintet for its first windows."""
     table = parse(library()[scene])
     preset = table.get("presets", {}).get("quick")
     window = {**table, **(preset or {})}.get("window", "auto")
     end = 1e-5 if window == "auto" else 10 * window
-    quick = [] if preset is None else ["--preset", "quick"]
-    plain = ["--set", "output.interval=0", "--set", "output.pictures=[]"]
-    return ["run", scene, *quick, "--set", f"end={end}", *plain]
+    preset_arguments = [] if preset is None else ["--preset", "quick"]
+    output_settings = ["--set", "output.interval=0", "--set", "output.pictures=[]"]
+    return ["run", scene, *preset_arguments, "--set", f"end={end}", *output_settings]
 
 
 FEW = ("block_on_slope", "still_water", "two_springs")  # of each solver one, and a user's class
-SCENES = [pytest.param(one, marks=[] if one in FEW else FULL) for one in sorted(library())]
+SCENES = [pytest.param(name, marks=[] if name in FEW else FULL) for name in sorted(library())]
 
 
 @pytest.mark.parametrize("scene", SCENES)
-def test_scenes_run_beside_files_with_names_of_modules(here, scene):
-    status, said = ran(*briefly(scene), "--transport", "memory", "--out", "out")
-    assert status in (0, 1), said
-    assert "of the current folder" not in said and "done" in said
+def test_scenes_run_beside_files_with_names_of_modules(current_folder, scene):
+    status, output = run_command(*short_run(scene), "--transport", "memory", "--out", "out")
+    assert status in (0, 1), output
+    assert "of the current folder" not in output and "done" in output
 
 
 @pytest.mark.parametrize("transport", OVER)
 @pytest.mark.parametrize("scene", ["two_springs", pytest.param("still_water", marks=FULL)])
-def test_components_in_processes_run_beside_them_too(here, scene, transport):
-    status, said = ran(*briefly(scene), "--transport", transport, "--out", "out")
-    assert status in (0, 1), said
-    assert "of the current folder" not in said and "done" in said
+def test_components_in_processes_run_beside_them_too(current_folder, scene, transport):
+    status, output = run_command(*short_run(scene), "--transport", transport, "--out", "out")
+    assert status in (0, 1), output
+    assert "of the current folder" not in output and "done" in output
 
 
 @pytest.mark.parametrize("transport", ["memory", *OVER])
-def test_components_of_the_scenes_folder_come_after_all_that_is_installed(here, transport):
-    status, said = ran("run", write_scene(here, transport, 0.01), "--out", "out")
-    assert status == 0, said
+def test_components_of_the_scenes_folder_come_after_all_that_is_installed(
+    current_folder, transport
+):
+    status, output = run_command(
+        "run", write_scene(current_folder, transport, 0.01), "--out", "out"
+    )
+    assert status == 0, output
 
 
-def test_a_study_runs_beside_them_too(here):
-    path = write_scene(here, end=0.005)
+def test_a_study_runs_beside_them_too(current_folder):
+    path = write_scene(current_folder, end=0.005)
     path.write_text(path.read_text() + '[[study]]\nlabel = "as it is"\nsettings = {}\n')
-    status, said = ran("study", path, "--out", "out")
-    assert "as it is: done" in said and status in (0, 1), said
+    status, output = run_command("study", path, "--out", "out")
+    assert "as it is: done" in output and status in (0, 1), output
 
 
-def test_a_benchmark_and_the_laws_of_the_contract_are_tried_beside_them_too(here):
-    write_scene(here)
+def test_a_benchmark_and_the_laws_of_the_contract_are_tried_beside_them_too(current_folder):
+    write_scene(current_folder)
     conform = ["conform", "--scene", "scene.toml", "--component", "ping"]
     for command in (["bench", "toys:COUNTED", "--case", "small"], conform):
-        status, said = ran(*command)
-        assert status in (0, 1) and "of the current folder" not in said, said
+        status, output = run_command(*command)
+        assert status in (0, 1) and "of the current folder" not in output, output
 
 
 @pytest.mark.full
@@ -97,9 +101,9 @@ def test_a_benchmark_and_the_laws_of_the_contract_are_tried_beside_them_too(here
     ],
     ids=" ".join,
 )
-def test_other_commands_run_beside_them_too(here, command):
-    status, said = ran(*command)
-    assert status == 0 and "of the current folder" not in said, said
+def test_other_commands_run_beside_them_too(current_folder, command):
+    status, output = run_command(*command)
+    assert status == 0 and "of the current folder" not in output, output
 
 
 def test_folders_come_last_and_the_latest_first_of_them(monkeypatch):

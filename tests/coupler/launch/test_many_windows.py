@@ -1,4 +1,4 @@
-"""Thousands of windows, a pause in the middle: every answer is that to its own question."""
+"""Thousands of windows, a pause in the middle: every answer belongs to its own request."""
 
 import subprocess
 import sys
@@ -56,10 +56,10 @@ def test_no_window_is_lost_when_the_coupler_pauses(tmp_path, transport, count):
     if transport == "zenoh":
         command = [sys.executable, *command]
     else:
-        beside = Path(sys.executable).with_name("mpiexec")
-        launcher = str(beside) if beside.exists() else "mpiexec"
+        installed = Path(sys.executable).with_name("mpiexec")
+        launcher = str(installed) if installed.exists() else "mpiexec"
         python = ["-n", "1", sys.executable, "-m", "mpi4py"]
         command = [launcher, *python, *command, ":", *python, "-m", *COMPONENT]
-    done = subprocess.run(command, timeout=90, capture_output=True, text=True)
-    assert done.returncode == 0, done.stdout + done.stderr
+    result = subprocess.run(command, timeout=90, capture_output=True, text=True)
+    assert result.returncode == 0, result.stdout + result.stderr
     assert (tmp_path / "done").read_text() == str(count)

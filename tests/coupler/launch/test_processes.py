@@ -1,4 +1,4 @@
-"""Of a watched process it is told what it does, and how it ended."""
+"""The watch of a process reports its activity, and how it ended."""
 
 import os
 import signal
@@ -60,7 +60,7 @@ def watched():
 
 
 def activity_within(watch, seconds, words):
-    """What the watch says that a process does, until it says so or a time is over."""
+    """Read the watch until it reports these words or the time is over; return its last report."""
     limit = time.monotonic() + seconds
     watch.begin()
     while time.monotonic() < limit and words not in watch.activity:
@@ -70,7 +70,7 @@ def activity_within(watch, seconds, words):
 
 
 def ending_within(watch, seconds):
-    """How the watch says that a process ended."""
+    """The ending of a process that the watch reports."""
     limit = time.monotonic() + seconds
     while time.monotonic() < limit and watch.alive():
         time.sleep(0.02)
@@ -141,7 +141,7 @@ def test_a_process_that_is_not_our_child_is_gone_when_it_is():
 
 
 @pytest.mark.parametrize(
-    ("written", "words"),
+    ("content", "words"),
     [
         ("137\n", "was killed by signal 9 (SIGKILL)"),
         ("139\n", "was killed by signal 11 (SIGSEGV): its compiled code used memory"),
@@ -151,8 +151,8 @@ def test_a_process_that_is_not_our_child_is_gone_when_it_is():
         ("", "is gone: it ended or was killed"),
     ],
 )
-def test_how_a_rank_ended_is_read_from_the_file_of_its_parent(tmp_path, written, words):
-    (tmp_path / "pong.exit").write_text(written)
+def test_how_a_rank_ended_is_read_from_the_file_of_its_parent(tmp_path, content, words):
+    (tmp_path / "pong.exit").write_text(content)
     assert words in ProcessProbe("pong", 7, exit_file=tmp_path / "pong.exit").ending()
 
 
@@ -162,8 +162,8 @@ def test_a_rank_on_another_host_lives_until_its_exit_status_is_written(tmp_path,
     assert probe.alive() and "on another host" in probe.described()
     (tmp_path / "exit").write_text("137\n")
     assert not probe.alive()
-    said = "its process, not on the coupler's host, was killed by signal 9 (SIGKILL)"
-    assert probe.ending() == said
+    ending = "its process, not on the coupler's host, was killed by signal 9 (SIGKILL)"
+    assert probe.ending() == ending
 
 
 def test_a_lack_of_memory_is_said_where_the_system_has_killed_for_it(monkeypatch, tmp_path):
@@ -178,16 +178,16 @@ def test_who_has_not_joined_is_on_no_other_host():
 
 
 def test_ending_leaves_no_process_and_no_file(watched, tmp_path):
-    watch, left = watched(SLEEPS), tmp_path / "shared"
-    left.touch()
-    watch.shared = [str(left), str(tmp_path / "never was")]
+    watch, shared_file = watched(SLEEPS), tmp_path / "shared"
+    shared_file.touch()
+    watch.shared = [str(shared_file), str(tmp_path / "never was")]
     watch.end(0.1)
-    assert not watch.alive() and not left.exists()
+    assert not watch.alive() and not shared_file.exists()
 
 
 def test_all_that_a_process_has_started_is_found_and_ended(tmp_path):
-    apart = f"import os; os.setsid(); print('apart', flush=True); {SLEEPS}"
-    code = f"import subprocess, sys; subprocess.Popen([sys.executable, '-c', {apart!r}])"
+    child_code = f"import os; os.setsid(); print('apart', flush=True); {SLEEPS}"
+    code = f"import subprocess, sys; subprocess.Popen([sys.executable, '-c', {child_code!r}])"
     process = subprocess.Popen(
         [sys.executable, "-c", code],
         env={**os.environ, "QUINTET_TEST_MARK": str(tmp_path)},
@@ -202,9 +202,9 @@ def test_all_that_a_process_has_started_is_found_and_ended(tmp_path):
 
 def test_a_component_gets_its_threads_and_the_import_path_without_where_we_are(monkeypatch):
     monkeypatch.setenv("PYTHONPATH", f"/elsewhere{os.pathsep}")
-    made = environment(3)
-    assert made["NUMBA_NUM_THREADS"] == made["OMP_NUM_THREADS"] == "3"
-    assert made["PYTHONPATH"] == "/elsewhere"
+    variables = environment(3)
+    assert variables["NUMBA_NUM_THREADS"] == variables["OMP_NUM_THREADS"] == "3"
+    assert variables["PYTHONPATH"] == "/elsewhere"
 
 
 def test_a_log_is_quoted_from_its_end(tmp_path):
@@ -214,8 +214,8 @@ def test_a_log_is_quoted_from_its_end(tmp_path):
     assert tail(tmp_path / "none") == []
 
 
-def only(folder, monkeypatch):
-    """Let mpiexec be looked for in one folder."""
+def find_mpiexec_only_in(folder, monkeypatch):
+    """Make the search for mpiexec look in one folder only."""
     monkeypatch.setattr(sys, "executable", str(folder / "python"))
     monkeypatch.setenv("PATH", str(folder))
 
@@ -224,7 +224,7 @@ def test_ranks_are_the_coupler_and_every_component(tmp_path, monkeypatch):
     launcher = tmp_path / "mpiexec"
     launcher.write_text("#!/bin/sh\necho HYDRA build details:\n")
     launcher.chmod(0o755)
-    only(tmp_path, monkeypatch)
+    find_mpiexec_only_in(tmp_path, monkeypatch)
     scene = load(str(write_scene(tmp_path)))
     line = mpi_job.command(["run", "x.toml"], scene, tmp_path)
     assert line[:2] == [str(launcher), "-disable-auto-cleanup"]
@@ -236,7 +236,7 @@ def test_ranks_are_the_coupler_and_every_component(tmp_path, monkeypatch):
 
 
 def test_a_missing_launcher_is_said(tmp_path, monkeypatch):
-    only(tmp_path, monkeypatch)
+    find_mpiexec_only_in(tmp_path, monkeypatch)
     scene = load(str(write_scene(tmp_path)))
     with pytest.raises(SceneError, match=r"needs an mpiexec; there is none on PATH\. Install"):
         mpi_job.command([], scene, tmp_path)

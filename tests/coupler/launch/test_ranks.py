@@ -35,14 +35,17 @@ def of_one_rank(tmp_path_factory):
 @pytest.mark.parametrize("ranks", [2, 3])
 @pytest.mark.parametrize("transport", OVER)
 def test_several_ranks_give_the_bits_of_one(tmp_path, of_one_rank, transport, ranks):
-    started = run(write(tmp_path / "run", transport, ranks))
-    assert started.process.returncode == 0, started.err
-    assert compare(of_one_rank, started.folder) is None
-    assert f"chain (toy_ranks:Chain, {ranks} ranks)" in started.out
-    used = started.results["timing"]["components"]
-    assert used["chain"]["memory"] > 0.7 * ranks * used["pusher"]["memory"], "of all ranks"
-    assert used["chain"]["cpu"] > 0.0
-    assert not started.left_processes(5.0) and (started.folder / "log" / "chain.rank1.log").exists()
+    chain_run = run(write(tmp_path / "run", transport, ranks))
+    assert chain_run.process.returncode == 0, chain_run.err
+    assert compare(of_one_rank, chain_run.folder) is None
+    assert f"chain (toy_ranks:Chain, {ranks} ranks)" in chain_run.out
+    usage = chain_run.results["timing"]["components"]
+    assert usage["chain"]["memory"] > 0.7 * ranks * usage["pusher"]["memory"], "of all ranks"
+    assert usage["chain"]["cpu"] > 0.0
+    assert (
+        not chain_run.left_processes(5.0)
+        and (chain_run.folder / "log" / "chain.rank1.log").exists()
+    )
 
 
 @pytest.mark.parametrize("transport", OVER)
@@ -56,32 +59,41 @@ def test_ranks_that_get_only_the_rows_they_need_give_the_same_bits(tmp_path, tra
 
 
 @pytest.mark.mpi
-@pytest.mark.parametrize(("before", "after"), [(3, 1), (1, 2)])
+@pytest.mark.parametrize(("ranks_before", "ranks_after"), [(3, 1), (1, 2)])
 def test_a_snapshot_of_any_number_of_ranks_goes_on_with_any_other(
-    tmp_path, of_one_rank, before, after
+    tmp_path, of_one_rank, ranks_before, ranks_after
 ):
-    started = Started(write(tmp_path / "run", "mpi", before, keys="pause = 5e-3"))
-    started.wait_until(lambda: list(started.folder.glob("snapshot-*")))
-    started.process.terminate()
-    started.process.communicate(timeout=30)
-    assert started.process.returncode == 130
-    changed = write(tmp_path / "run", "mpi", after, keys="pause = 5e-3")
-    with pytest.raises(SystemExit) as ended:
-        main(["run", str(changed), "--resume", str(started.folder)])
-    assert ended.value.code == 0
-    assert compare(of_one_rank, started.folder) is None
+    chain_run = Started(write(tmp_path / "run", "mpi", ranks_before, keys="pause = 5e-3"))
+    chain_run.wait_until(lambda: list(chain_run.folder.glob("snapshot-*")))
+    chain_run.process.terminate()
+    chain_run.process.communicate(timeout=30)
+    assert chain_run.process.returncode == 130
+    scene = write(tmp_path / "run", "mpi", ranks_after, keys="pause = 5e-3")
+    with pytest.raises(SystemExit) as exit_info:
+        main(["run", str(scene), "--resume", str(chain_run.folder)])
+    assert exit_info.value.code == 0
+    assert compare(of_one_rank, chain_run.folder) is None
 
 
 @pytest.mark.zenoh
 def test_ranks_join_by_hand(tmp_path, of_one_rank):
     port, path = free_port(), write(tmp_path / "run", "zenoh", 2)
-    at = f"tcp/127.0.0.1:{port}"
-    started = Started(path, "--set", f'endpoint="{at}"', "--elsewhere", "chain")
-    command = [sys.executable, "-m", "quintet.coupler.cli", "join", str(path), "chain", "--at", at]
-    joined = subprocess.run(command, capture_output=True, text=True, timeout=60)
-    assert joined.returncode == 0, joined.stderr
-    assert started.wait() == 0, started.err
-    assert compare(of_one_rank, started.folder) is None
+    endpoint = f"tcp/127.0.0.1:{port}"
+    chain_run = Started(path, "--set", f'endpoint="{endpoint}"', "--elsewhere", "chain")
+    command = [
+        sys.executable,
+        "-m",
+        "quintet.coupler.cli",
+        "join",
+        str(path),
+        "chain",
+        "--at",
+        endpoint,
+    ]
+    result = subprocess.run(command, capture_output=True, text=True, timeout=60)
+    assert result.returncode == 0, result.stderr
+    assert chain_run.wait() == 0, chain_run.err
+    assert compare(of_one_rank, chain_run.folder) is None
 
 
 def test_a_kind_that_computes_on_one_rank_refuses_more(tmp_path):
@@ -98,7 +110,7 @@ def test_memory_refuses_several_ranks(tmp_path):
 
 @pytest.mark.zenoh
 def test_ranks_that_are_killed_as_they_start_leave_nothing(tmp_path):
-    """They have told nobody yet of the files that they share."""
+    """They have not reported their shared files yet."""
     scene = write(tmp_path / "run", "zenoh", 3)
     for n in range(4):
         started = Started(scene, out=tmp_path / f"out{n}")

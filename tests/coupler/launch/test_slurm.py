@@ -39,13 +39,13 @@ def cluster(tmp_path_factory):
 
 
 def _launch(cluster, folder, *arguments, limit="00:10:00"):
-    words = ("--slurm", "--nodes", "2", "--time", limit, "--margin", "10")
-    said = cluster.call(*QUINTET, "launch", *map(str, arguments), *words, *OUT, cwd=folder)
-    assert "Submitted batch job" in said, said
+    options = ("--slurm", "--nodes", "2", "--time", limit, "--margin", "10")
+    output = cluster.call(*QUINTET, "launch", *map(str, arguments), *options, *OUT, cwd=folder)
+    assert "Submitted batch job" in output, output
 
 
 def _output(folder):
-    """What all jobs said, one after the other."""
+    """The output of all jobs, one after the other."""
     jobs = sorted(folder.glob("*-*.out"), key=lambda path: int(path.stem.rpartition("-")[2]))
     return "".join(path.read_text() for path in jobs)
 
@@ -58,16 +58,16 @@ def _wait_for_windows(folder):
 
 
 def test_the_main_job_goes_on_in_further_jobs_to_the_same_bits(cluster, tmp_path):
-    undisturbed = tmp_path / "undisturbed"
-    subprocess.run([*QUINTET, "run", *MAIN, "--out", str(undisturbed)], capture_output=True)
+    reference = tmp_path / "undisturbed"
+    subprocess.run([*QUINTET, "run", *MAIN, "--out", str(reference)], capture_output=True)
     _launch(cluster, tmp_path, *MAIN, limit="00:01:00")
     cluster.wait(900.0)
-    said = _output(tmp_path)
-    resumed = re.findall(r"ended in snapshot-(\d+)\.h5; submitted again", said)
-    assert resumed and list(map(int, resumed)) == sorted(set(map(int, resumed))), said
-    assert said.count("quintet launch: the run is done") == 1, said
+    output = _output(tmp_path)
+    windows = re.findall(r"ended in snapshot-(\d+)\.h5; submitted again", output)
+    assert windows and list(map(int, windows)) == sorted(set(map(int, windows))), output
+    assert output.count("quintet launch: the run is done") == 1, output
     assert results(tmp_path / "run")["status"] == "done"
-    assert compare(undisturbed, tmp_path / "run") is None
+    assert compare(reference, tmp_path / "run") is None
     assert not list((tmp_path / "run/log").glob("*.exit"))
 
 
@@ -75,9 +75,9 @@ def test_a_failed_run_is_reported_and_not_submitted_again(cluster, tmp_path):
     scene = write_scene(tmp_path, "mpi", 0.1, pong="fails_at = 50")
     _launch(cluster, tmp_path, scene)
     cluster.wait(120.0)
-    said = _output(tmp_path)
-    assert "pong failed in window" in said and "not submitted again" in said
-    assert "the run failed with status" in said and "Submitted batch" not in said
+    output = _output(tmp_path)
+    assert "pong failed in window" in output and "not submitted again" in output
+    assert "the run failed with status" in output and "Submitted batch" not in output
     assert results(tmp_path / "run")["fault"]["component"] == "pong"
 
 
@@ -90,31 +90,31 @@ def test_a_killed_coupler_leaves_results_and_its_ranks_are_ended(cluster, tmp_pa
     subprocess.run(["kill", "-KILL", coupler])
     cluster.wait(150.0)
     assert results(tmp_path / "run")["fault"]["component"] == "coupler"
-    said = _output(tmp_path)
-    assert "the run failed with status 137" in said and job in said
+    output = _output(tmp_path)
+    assert "the run failed with status 137" in output and job in output
 
 
 def test_a_component_that_is_killed_on_the_other_node_is_named(cluster, tmp_path):
-    """Ping is placed on the second node: only the file with its exit status tells of its end."""
+    """Ping is placed on the second node: only the file with its exit status reports its end."""
     scene = write_scene(tmp_path, "mpi", 1000.0, pong="pause = 1e-3")
     _launch(cluster, tmp_path, scene)
     _wait_for_windows(tmp_path)
     log = (tmp_path / "run/log/ping.log").read_text()
     subprocess.run(["kill", "-KILL", re.search(r"process (\d+)", log)[1]])
-    began = time.monotonic()
+    start = time.monotonic()
     while "ping failed in window" not in _output(tmp_path):
-        assert time.monotonic() < began + 10.0, _output(tmp_path)
+        assert time.monotonic() < start + 10.0, _output(tmp_path)
         time.sleep(0.1)
     cluster.wait(100.0)
-    who = "its process, not on the coupler's host," if cluster.other_host else "process"
+    subject = "its process, not on the coupler's host," if cluster.other_host else "process"
     fault = results(tmp_path / "run")["fault"]
     assert fault["component"] == "ping" and "by signal 9 (SIGKILL)" in fault["cause"]
-    assert who in fault["cause"]
+    assert subject in fault["cause"]
 
 
 def test_a_component_of_two_ranks_on_two_nodes_gives_the_bits_of_one(cluster, tmp_path):
-    alone = write_chain(tmp_path / "alone", "memory", 1)
-    subprocess.run([*QUINTET, "run", str(alone), "--out", str(tmp_path / "one")], check=True)
+    scene = write_chain(tmp_path / "alone", "memory", 1)
+    subprocess.run([*QUINTET, "run", str(scene), "--out", str(tmp_path / "one")], check=True)
     _launch(cluster, tmp_path, write_chain(tmp_path / "chain", "mpi", 2))
     cluster.wait(100.0)
     assert results(tmp_path / "run")["status"] == "done", _output(tmp_path)
@@ -147,10 +147,10 @@ def test_who_cancels_a_job_gets_a_snapshot_and_no_other_job(cluster, tmp_path):
 
 
 def test_a_job_without_progress_is_the_last(cluster, tmp_path):
-    """A window that takes longer than a job may, as a margin that is too short, would go on."""
+    """A window that takes longer than a job would be submitted again for ever."""
     scene = write_scene(tmp_path, "mpi", 1000.0, pong="pause = 200.0")
     _launch(cluster, tmp_path, scene, limit="00:01:00")
     cluster.wait(200.0)
-    said = _output(tmp_path)
-    assert "no snapshot was written in this job" in said and "Submitted batch" not in said
+    output = _output(tmp_path)
+    assert "no snapshot was written in this job" in output and "Submitted batch" not in output
     shutil.rmtree(tmp_path / "run")

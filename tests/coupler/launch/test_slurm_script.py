@@ -1,4 +1,4 @@
-"""``quintet launch`` writes a job script that bash can read, and refuses what cannot run."""
+"""``quintet launch`` writes a job script that bash can read, and refuses impossible jobs."""
 
 import subprocess
 
@@ -30,8 +30,8 @@ def _script(tmp_path, name="dam_break_cubes.slurm"):
 
 
 def test_a_script_has_every_rank_on_its_node_with_its_threads(launch, tmp_path):
-    asked = ("dam_break_cubes", "--preset", "quick", "--nodes", "2", *SLURM)
-    assert launch(*asked, "--partition", "short", "--account", "me")[0] == 0
+    arguments = ("dam_break_cubes", "--preset", "quick", "--nodes", "2", *SLURM)
+    assert launch(*arguments, "--partition", "short", "--account", "me")[0] == 0
     text = _script(tmp_path)
     assert "#SBATCH --nodes=2 --ntasks=2 --ntasks-per-node=1\n#SBATCH --cpus-per-task=2\n" in text
     assert "#SBATCH --time=02:00:00 --signal=TERM@120\n" in text
@@ -47,10 +47,10 @@ def test_texts_of_a_scene_cannot_break_out_of_the_script(launch, tmp_path):
     assert launch("two_springs", "--set", title, *SLURM, "-o", "a b.slurm")[0] == 0
     text = _script(tmp_path, "a b.slurm")
     begin = next(line for line in text.splitlines() if line.startswith("begin="))
-    shown = subprocess.run(
+    result = subprocess.run(
         ["bash", "-c", begin + '; printf "%s\\n" "${begin[@]}"'], capture_output=True, text=True
     )
-    assert title in shown.stdout.splitlines() and not (tmp_path / "broken").exists()
+    assert title in result.stdout.splitlines() and not (tmp_path / "broken").exists()
 
 
 def test_in_an_image_every_rank_runs_in_it(launch, tmp_path):
@@ -65,8 +65,8 @@ def test_a_former_run_places_by_measured_times(launch, tmp_path, capsys):
         main(["run", "two_springs", "--transport", "memory", "--set", "end=0.01", "--out", "old"])
     capsys.readouterr()
     assert launch("two_springs", *SLURM, "--measured", "old")[0] == 0
-    status, _, said = launch("two_springs", *SLURM, "--measured", "nowhere", "-o", "b")
-    assert status == 2 and "it has no results.json" in said
+    status, _, errors = launch("two_springs", *SLURM, "--measured", "nowhere", "-o", "b")
+    assert status == 2 and "it has no results.json" in errors
 
 
 @pytest.mark.parametrize(
@@ -87,8 +87,8 @@ def test_what_cannot_run_is_refused(launch, tmp_path, arguments, words):
     (tmp_path / "mine").write_text("my notes")
     (tmp_path / "full").mkdir()
     (tmp_path / "full/notes").write_text("")
-    status, _, said = launch(*arguments)
-    assert status == 2 and words in said
+    status, _, errors = launch(*arguments)
+    assert status == 2 and words in errors
     assert (tmp_path / "mine").read_text() == "my notes"
 
 

@@ -1,4 +1,4 @@
-"""Whatever other programs send to a run's endpoint, the run goes on, and says what it dropped."""
+"""A run goes on whatever other programs send to its endpoint, and reports the dropped messages."""
 
 import json
 import re
@@ -50,13 +50,13 @@ def wait_for_endpoint(port, seconds=30.0):
 
 
 def strangers(port):
-    """Another program that sends what it can; return what it has overheard."""
+    """Run another program that sends messages of all kinds; return the messages it overheard."""
     command = [sys.executable, "-c", STRANGER, f"tcp/127.0.0.1:{port}"]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=True)
-    return json.loads(done.stdout)
+    result = subprocess.run(command, capture_output=True, text=True, timeout=60, check=True)
+    return json.loads(result.stdout)
 
 
-def begun(folder, port, *arguments):
+def begin_run(folder, port, *arguments):
     folder.mkdir()
     scene = write_scene(folder, "zenoh", 0.5, ping="pause = 0.01")
     run = Started(scene, "--set", f'endpoint="tcp/127.0.0.1:{port}"', *arguments)
@@ -65,46 +65,46 @@ def begun(folder, port, *arguments):
 
 
 def join(scene, name, port):
-    """Try to join a run by hand; return the status, what is said, and the time it took."""
+    """Try to join a run by hand; return the status, the output, and the time it took."""
     command = [sys.executable, "-m", "quintet.coupler.cli", "join", str(scene), name]
     command += ["--at", f"tcp/127.0.0.1:{port}"]
-    began = time.monotonic()
-    done = subprocess.run(command, capture_output=True, text=True, timeout=60)
-    return done.returncode, done.stdout + done.stderr, time.monotonic() - began
+    start = time.monotonic()
+    result = subprocess.run(command, capture_output=True, text=True, timeout=60)
+    return result.returncode, result.stdout + result.stderr, time.monotonic() - start
 
 
 @pytest.mark.slow
 def test_a_run_among_strangers_gives_the_same_bits(tmp_path):
     port = free_port()
-    run, scene = begun(tmp_path / "disturbed", port)
+    run, scene = begin_run(tmp_path / "disturbed", port)
     links = [socket.create_connection(("127.0.0.1", port)) for _ in range(30)]
-    for n, link in enumerate(links):
-        link.sendall(bytes(range(n)))
+    for index, link in enumerate(links):
+        link.sendall(bytes(range(index)))
     overheard = strangers(port)  # as the components start
     run.wait_for_windows()
     assert strangers(port) == overheard  # within windows
     assert not [key for key in overheard if "@" in key]
-    status, said, _ = join(scene, "pong", port)
-    assert status == 3 and "pong is started by the run itself" in said
+    status, message, _ = join(scene, "pong", port)
+    assert status == 3 and "pong is started by the run itself" in message
     assert run.wait() == 0, run.err
     for link in links:
         link.close()
     notes = run.results["notes"]["coupler"]
-    dropped = re.match(r"(\d+) message\(s\) from outside the run were dropped", notes[0])
-    assert dropped and 500 <= int(dropped[1]) <= 1000  # the first ones may come before it listens
+    match = re.match(r"(\d+) message\(s\) from outside the run were dropped", notes[0])
+    assert match and 500 <= int(match[1]) <= 1000  # the first ones may come before it listens
     assert "1 request(s) to join were refused" in notes[1]
     assert run.err.count("message(s) from outside the run") < 6  # at most one in ten seconds
-    alone = Started(scene, out=tmp_path / "alone")
-    assert alone.wait() == 0 and "notes" not in alone.results["notes"]
-    assert same(run.folder, alone.folder)
-    status, said, took = join(scene, "pong", port)
-    assert status == 3 and "nobody listens on port" in said and took < 20.0
+    reference = Started(scene, out=tmp_path / "alone")
+    assert reference.wait() == 0 and "notes" not in reference.results["notes"]
+    assert same(run.folder, reference.folder)
+    status, message, seconds = join(scene, "pong", port)
+    assert status == 3 and "nobody listens on port" in message and seconds < 20.0
 
 
 @pytest.mark.slow
 def test_a_second_join_is_refused_and_ends_nothing(tmp_path):
     port = free_port()
-    run, scene = begun(tmp_path / "run", port, "--elsewhere", "pong", "--set", "patience=1.0")
+    run, scene = begin_run(tmp_path / "run", port, "--elsewhere", "pong", "--set", "patience=1.0")
     assert join(scene, "ping", port)[0] == 3
     time.sleep(2.0)
     command = [sys.executable, "-m", "quintet.coupler.cli", "join", str(scene), "pong"]
@@ -112,9 +112,9 @@ def test_a_second_join_is_refused_and_ends_nothing(tmp_path):
     first = subprocess.Popen(command, stdout=subprocess.DEVNULL)
     run.wait_until(lambda: "built" in (run.folder / "log" / "ping.log").read_text())
     time.sleep(1.0)
-    status, said, _ = join(scene, "pong", port)
+    status, message, _ = join(scene, "pong", port)
     assert status == 3
-    assert "pong has joined already (process" in said or "nobody listens" in said
+    assert "pong has joined already (process" in message or "nobody listens" in message
     assert run.wait() == 0, run.err
     assert first.wait(10.0) == 0
     assert "the run waits for pong: nobody has joined as pong yet" in run.err

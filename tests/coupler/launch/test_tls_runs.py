@@ -1,4 +1,4 @@
-"""Runs over TLS: who has no right to join is refused with the reason, and the bits are the same."""
+"""Runs over TLS: a foreign process is refused with the reason, and the bits are the same."""
 
 import json
 import os
@@ -45,79 +45,83 @@ class OverTls:
         )
 
     def refusal(self, name, *tls, protocol="tls"):
-        """What somebody is told who may not join."""
+        """The output of a process that may not join."""
         process = self.begin(name, *tls, protocol=protocol)
-        said, _ = process.communicate(timeout=60.0)
-        assert process.returncode in (2, 3), said
-        return said
+        output, _ = process.communicate(timeout=60.0)
+        assert process.returncode in (2, 3), output
+        return output
 
 
 @pytest.fixture
 def over_tls(tmp_path):
-    begun = []
+    runs = []
 
     def begin(*arguments):
-        begun.append(OverTls(tmp_path, *arguments))
-        return begun[-1]
+        runs.append(OverTls(tmp_path, *arguments))
+        return runs[-1]
 
     yield begin
-    for it in begun:
-        it.run.end()
+    for tls_run in runs:
+        tls_run.run.end()
 
 
 @pytest.mark.full
 def test_who_has_no_right_to_join_is_told_why_and_the_run_goes_on(over_tls, tmp_path):
-    it = over_tls("--elsewhere", "pong", "--set", "patience=60.0")
-    port = f"localhost:{it.port}"
-    stranger = socket.create_connection(("127.0.0.1", it.port))
+    tls_run = over_tls("--elsewhere", "pong", "--set", "patience=60.0")
+    port = f"localhost:{tls_run.port}"
+    stranger = socket.create_connection(("127.0.0.1", tls_run.port))
     stranger.sendall(bytes(range(100)))
-    assert "that of process" in (said := it.refusal("pong", "--tls", *files_of(it.tls, "ping")))
-    assert "pong must join with a certificate whose common name is pong" in said
+    assert "that of process" in (
+        message := tls_run.refusal("pong", "--tls", *files_of(tls_run.tls, "ping"))
+    )
+    assert "pong must join with a certificate whose common name is pong" in message
     foreign = files_of(tmp_path / "foreign", "pong")
-    assert "is not signed by the authority" in it.refusal("pong", "--tls", *foreign)
-    mixed = [files_of(it.tls, "pong")[0], *foreign[1:]]
-    assert "its authority did not sign it" in it.refusal("pong", "--tls", *mixed)
-    assert "tls needs authority, certificate and key" in it.refusal("pong")
-    assert "the run listens with tls; a plain connection" in it.refusal("pong", protocol="tcp")
-    command = re.search(r"pong is awaited: (.*)", it.run.process.stdout.readline() + "".join(
-        it.run.process.stdout.readline() for _ in range(2)))[1]  # fmt: skip
-    assert f"--at tls/{port} --tls {' '.join(files_of(it.tls, 'pong'))}" in command
-    joined = it.begin("pong", "--tls", *files_of(it.tls, "pong"))
-    it.run.wait_until(lambda: "built" in (it.run.folder / "log" / "ping.log").read_text(), 60.0)
-    assert it.run.wait(120.0) == 0, it.run.err
-    joined.communicate(timeout=30.0)
-    assert "1 request(s) to join were refused" in it.run.results["notes"]["coupler"][0]
+    assert "is not signed by the authority" in tls_run.refusal("pong", "--tls", *foreign)
+    mixed = [files_of(tls_run.tls, "pong")[0], *foreign[1:]]
+    assert "its authority did not sign it" in tls_run.refusal("pong", "--tls", *mixed)
+    assert "tls needs authority, certificate and key" in tls_run.refusal("pong")
+    assert "the run listens with tls; a plain connection" in tls_run.refusal("pong", protocol="tcp")
+    command = re.search(r"pong is awaited: (.*)", tls_run.run.process.stdout.readline() + "".join(
+        tls_run.run.process.stdout.readline() for _ in range(2)))[1]  # fmt: skip
+    assert f"--at tls/{port} --tls {' '.join(files_of(tls_run.tls, 'pong'))}" in command
+    process = tls_run.begin("pong", "--tls", *files_of(tls_run.tls, "pong"))
+    tls_run.run.wait_until(
+        lambda: "built" in (tls_run.run.folder / "log" / "ping.log").read_text(), 60.0
+    )
+    assert tls_run.run.wait(120.0) == 0, tls_run.run.err
+    process.communicate(timeout=30.0)
+    assert "1 request(s) to join were refused" in tls_run.run.results["notes"]["coupler"][0]
     stranger.close()
-    alone = Started(it.scene, out=tmp_path / "alone")
-    assert alone.wait() == 0
-    assert same(it.run.folder, alone.folder)
+    reference = Started(tls_run.scene, out=tmp_path / "alone")
+    assert reference.wait() == 0
+    assert same(tls_run.run.folder, reference.folder)
 
 
 @pytest.mark.full
 def test_a_component_that_is_killed_during_a_run_over_tls_is_replaced(over_tls, tmp_path):
-    it = over_tls("--set", "restarts=2")
-    it.run.wait_for_windows()
-    os.kill(it.run.pid_of("pong"), signal.SIGKILL)
-    assert it.run.wait(120.0) == 0, it.run.err
-    assert "with the same bits" in it.run.results["notes"]["pong"][0]
-    alone = Started(it.scene, out=tmp_path / "alone")
-    assert alone.wait() == 0
-    assert same(it.run.folder, alone.folder)
+    tls_run = over_tls("--set", "restarts=2")
+    tls_run.run.wait_for_windows()
+    os.kill(tls_run.run.pid_of("pong"), signal.SIGKILL)
+    assert tls_run.run.wait(120.0) == 0, tls_run.run.err
+    assert "with the same bits" in tls_run.run.results["notes"]["pong"][0]
+    reference = Started(tls_run.scene, out=tmp_path / "alone")
+    assert reference.wait() == 0
+    assert same(tls_run.run.folder, reference.folder)
 
 
 @pytest.mark.full
 def test_who_joined_over_tls_and_died_may_join_again(over_tls, tmp_path):
-    it = over_tls("--elsewhere", "pong", "--set", "restarts=1")
-    pair = files_of(it.tls, "pong")
-    first = it.begin("pong", "--tls", *pair)
+    tls_run = over_tls("--elsewhere", "pong", "--set", "restarts=1")
+    files = files_of(tls_run.tls, "pong")
+    first = tls_run.begin("pong", "--tls", *files)
     while "step 50" not in first.stdout.readline():
         assert first.poll() is None
     first.kill()
     first.communicate()
-    second = it.begin("pong", "--tls", *pair)
-    assert it.run.wait(120.0) == 0, it.run.err
+    second = tls_run.begin("pong", "--tls", *files)
+    assert tls_run.run.wait(120.0) == 0, tls_run.run.err
     second.communicate(timeout=30.0)
-    assert "with the same bits" in it.run.results["notes"]["pong"][0]
-    alone = Started(it.scene, out=tmp_path / "alone")
-    assert alone.wait() == 0
-    assert same(it.run.folder, alone.folder)
+    assert "with the same bits" in tls_run.run.results["notes"]["pong"][0]
+    reference = Started(tls_run.scene, out=tmp_path / "alone")
+    assert reference.wait() == 0
+    assert same(tls_run.run.folder, reference.folder)

@@ -1,4 +1,4 @@
-"""What the screen says of a component that takes long."""
+"""The messages on the screen about a component that takes long."""
 
 import os
 import sys
@@ -23,9 +23,9 @@ COMPILING = "\n".join(
 
 
 @pytest.fixture
-def told(capsys):
+def screen_of(capsys):
     def wait(names, calls):
-        """What is printed while the first component keeps the coupler waiting."""
+        """The text printed while the first component keeps the coupler waiting."""
         watchdog = Watchdog(StopRequest(), in_main_thread=True, alone=len(names) == 1)
         for name in names:
             probe = ProcessProbe(name, os.getpid(), where=lambda: calls)
@@ -47,27 +47,27 @@ def told(capsys):
     return wait
 
 
-def test_of_kernels_that_compile_no_call_of_the_compiler_is_shown(told):
-    said = told(["water"], COMPILING)
-    assert "quintet: water has taken " in said
-    assert "File" not in said and "waiting" not in said, "nobody else waits"
+def test_of_kernels_that_compile_no_call_of_the_compiler_is_shown(screen_of):
+    message = screen_of(["water"], COMPILING)
+    assert "quintet: water has taken " in message
+    assert "File" not in message and "waiting" not in message, "nobody else waits"
 
 
-def test_who_computes_is_shown_with_its_place_and_the_others_that_wait(told):
-    said = told(["water", "cubes"], SOLVER)
-    assert "quintet: water keeps the others waiting for " in said and SOLVER in said
+def test_who_computes_is_shown_with_its_place_and_the_others_that_wait(screen_of):
+    message = screen_of(["water", "cubes"], SOLVER)
+    assert "quintet: water keeps the others waiting for " in message and SOLVER in message
 
 
 def test_over_memory_it_looks_without_long_waits_for_the_lock_of_python():
-    before, turns = sys.getswitchinterval(), []
+    interval, intervals = sys.getswitchinterval(), []
     watchdog = Watchdog(StopRequest(), in_main_thread=True)
     participant = Participant("water", MemoryLine("", "water"))
     participant.keeping_others_waiting.since = time.monotonic()
 
     class Probe(ProcessProbe):
         def read(self):
-            turns.append(sys.getswitchinterval())
+            intervals.append(sys.getswitchinterval())
 
     watchdog.check_wait(Watched(participant, Probe("water", os.getpid()), 60.0), 0.1)
-    assert turns and max(turns) < 0.2 * before
-    assert sys.getswitchinterval() == before
+    assert intervals and max(intervals) < 0.2 * interval
+    assert sys.getswitchinterval() == interval
