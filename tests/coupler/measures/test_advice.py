@@ -1,4 +1,4 @@
-"""Threads are advised by Amdahl's law and by who computes while others wait."""
+"""Threads are advised by Amdahl's law and by the components for which others wait."""
 
 import pytest
 
@@ -32,10 +32,10 @@ def _seconds(stage, loads, **cores):
 
 
 def test_times_follow_amdahls_law_from_whatever_cores_were_measured():
-    alone = Load(100.0, 1, 0.2)
-    assert alone.on(4) == pytest.approx(100.0 * (0.2 + 0.8 / 4))
-    assert Load(alone.on(4), 4, 0.2).on(1) == pytest.approx(100.0)
-    assert Load(alone.on(4), 2, 0.2, ranks=2).on(8) == pytest.approx(alone.on(8))
+    load = Load(100.0, 1, 0.2)
+    assert load.on(4) == pytest.approx(100.0 * (0.2 + 0.8 / 4))
+    assert Load(load.on(4), 4, 0.2).on(1) == pytest.approx(100.0)
+    assert Load(load.on(4), 2, 0.2, ranks=2).on(8) == pytest.approx(load.on(8))
 
 
 def test_serial_share_is_found_from_processor_time():
@@ -69,10 +69,8 @@ def test_no_other_division_of_the_cores_is_faster():
     loads = {"a": Load(50.0, 2, 0.3), "b": Load(70.0, 1, 0.05), "c": Load(5.0, 1, 0.1)}
     stage = stages(_plan("parallel", a=None, g=_plan("serial", b=None, c=None)))
     best = _seconds(stage, loads, **advised_cores(stage, loads, 6))
-    others = [
-        _seconds(stage, loads, a=number, b=6 - number, c=6 - number) for number in range(1, 6)
-    ]
-    assert best <= 1.01 * min(others)
+    times = [_seconds(stage, loads, a=number, b=6 - number, c=6 - number) for number in range(1, 6)]
+    assert best <= 1.01 * min(times)
 
 
 def test_one_waits_for_those_after_whom_it_steps_and_for_the_slowest_at_once():
@@ -98,16 +96,16 @@ def test_advice_says_who_should_get_what_and_how_the_share_is_known():
     advised = advice(AT_ONCE, loads, 4)
     assert advised["seconds"] == 90.0 and advised["advised_seconds"] == pytest.approx(36.0)
     assert advised["components"]["slow"]["advised_threads"] == 3
-    waited, said = sentences(advised)
-    assert waited == "Waits: fast 80 s for slow"
-    assert said == (
+    waits, text = sentences(advised)
+    assert waits == "Waits: fast 80 s for slow"
+    assert text == (
         "Advice for 4 cores: slow 3 threads instead of 1 thread (serial share 0.1, planned), fast "
         "1 thread instead of 3 threads (serial share 0.2, measured): 36 s of computing instead of "
         "90 s (Amdahl's law)"
     )
     best = {"slow": Load(36.0, 3, 0.1), "fast": Load(10.0)}
-    said = sentences(advice(AT_ONCE, best, 4))[-1]
-    assert said == "Advice for 4 cores: as they are, slow 3 threads, fast 1 thread"
+    text = sentences(advice(AT_ONCE, best, 4))[-1]
+    assert text == "Advice for 4 cores: as they are, slow 3 threads, fast 1 thread"
 
 
 def test_ranks_are_kept_and_their_threads_are_advised():

@@ -1,4 +1,4 @@
-"""An expectation measures what it says, and a mistake in it is a sentence."""
+"""An expectation takes the measure it names, and reports each mistake in a sentence."""
 
 from dataclasses import asdict
 
@@ -25,8 +25,8 @@ def recording(tmp_path):
             row = {"motion.position": np.array([[0.0, 0.0, 0.0], [1.0 + t, 0.0, np.sin(t)]])}
             row["load.force"] = np.full((2, 1), min(k, 1) * END / WINDOWS) * [[3.0, 0.0, 4.0]]
             recorder.add("cubes", Instant(t, k), row)
-    with Recording(tmp_path / "recording.h5") as found:
-        yield found
+    with Recording(tmp_path / "recording.h5") as reader:
+        yield reader
 
 
 def _expectation(**settings):
@@ -59,14 +59,14 @@ def _write(folder, text):
 def test_each_measure_of_a_straight_line_is_exact(tmp_path, recording, settings, value):
     outcome = evaluate(_expectation(value=value, **settings), recording, tmp_path)
     assert outcome.met and outcome.value == pytest.approx(value, abs=1e-12)
-    off = evaluate(_expectation(value=value + 1e-3, **settings), recording, tmp_path)
-    assert not off.met and off.reference == value + 1e-3
+    shifted = evaluate(_expectation(value=value + 1e-3, **settings), recording, tmp_path)
+    assert not shifted.met and shifted.reference == value + 1e-3
 
 
 def test_rms_is_taken_over_the_times_of_the_reference(tmp_path, recording):
     _write(tmp_path, "# a source\nt_s,x_m\n0.1,1.1\n0.5,1.8\n0.9,1.5  # off\n1.7,9\n")
-    one = _expectation(measure="rms", csv="ref.csv", end=1.0, within=0.5)
-    outcome = evaluate(one, recording, tmp_path)
+    expectation = _expectation(measure="rms", csv="ref.csv", end=1.0, within=0.5)
+    outcome = evaluate(expectation, recording, tmp_path)
     assert outcome.value == pytest.approx(np.sqrt((0.3**2 + 0.4**2) / 3))
     assert outcome.met and outcome.reference == 0.0
 
@@ -86,14 +86,16 @@ def test_a_reference_curve_is_measured_as_the_computed_one(tmp_path, recording):
 def test_times_count_from_a_level_in_the_run_and_in_the_reference(tmp_path, recording):
     """x = 1 + t passes 1.5 at 0.5 s, the reference at 2 s; both rise by 1 a second after it."""
     _write(tmp_path, "t,x\n1.0,0.5\n2.0,1.5\n4.0,3.5\n")
-    since = {"from_level": 1.5, "begin": 0.0, "end": 1.0, "csv": "ref.csv"}
-    whole = evaluate(_expectation(measure="integral", unit="m s", **since), recording, tmp_path)
-    assert whole.met and whole.value == pytest.approx(2.0)
-    assert evaluate(_expectation(measure="rms", **since), recording, tmp_path).met
-    never = _expectation(measure="mean", value=1.0, from_level=9.0)
-    assert evaluate(never, recording, tmp_path).value is None
-    late = _expectation(measure="mean", value=1.0, from_level=1.5, end=1.6)
-    outcome = evaluate(late, recording, tmp_path)
+    settings = {"from_level": 1.5, "begin": 0.0, "end": 1.0, "csv": "ref.csv"}
+    integral = evaluate(
+        _expectation(measure="integral", unit="m s", **settings), recording, tmp_path
+    )
+    assert integral.met and integral.value == pytest.approx(2.0)
+    assert evaluate(_expectation(measure="rms", **settings), recording, tmp_path).met
+    unreached_level = _expectation(measure="mean", value=1.0, from_level=9.0)
+    assert evaluate(unreached_level, recording, tmp_path).value is None
+    late_end = _expectation(measure="mean", value=1.0, from_level=1.5, end=1.6)
+    outcome = evaluate(late_end, recording, tmp_path)
     assert outcome.value is None  # the run ends 1.5 s after
     assert outcome.not_reached == pytest.approx(0.5 + 1.6), "a time of the run, not since the level"
     with pytest.raises(SceneError, match=r"must pass from_level 9.0; it does not"):
@@ -106,23 +108,25 @@ def test_an_oscillation_is_measured_by_its_period_and_decay(tmp_path, recording)
     assert evaluate(_expectation(axis=2, **base), recording, tmp_path).value is None
     assert evaluate(_expectation(axis=1, **base), recording, tmp_path).value is None
     _write(tmp_path, "t,x\n" + "\n".join(f"{0.01 * k},{np.sin(k)}" for k in range(100)))
-    one = _expectation(measure="period", csv="ref.csv", csv_second=100.0, unit="s", within=1.0)
-    assert evaluate(one, recording, tmp_path).reference == pytest.approx(2.0 * np.pi)
+    expectation = _expectation(
+        measure="period", csv="ref.csv", csv_second=100.0, unit="s", within=1.0
+    )
+    assert evaluate(expectation, recording, tmp_path).reference == pytest.approx(2.0 * np.pi)
 
 
 def test_times_of_a_reference_may_have_a_unit_of_their_own(tmp_path, recording):
     _write(tmp_path, "T,X\n0,1\n4,3\n")
-    one = _expectation(measure="rms", csv="ref.csv", csv_second=0.5, within=1e-9)
-    assert evaluate(one, recording, tmp_path).met
+    expectation = _expectation(measure="rms", csv="ref.csv", csv_second=0.5, within=1e-9)
+    assert evaluate(expectation, recording, tmp_path).met
     relative = _expectation(measure="relative_rms", csv="ref.csv", csv_second=0.25, end=1.0)
     assert evaluate(relative, recording, tmp_path).value == pytest.approx(np.sqrt(1.0 / 10.0))
 
 
 def test_a_vector_without_axis_is_its_magnitude_and_an_impulse_its_mean_rate(tmp_path, recording):
-    one = _expectation(field="load.force", axis=None, measure="mean", value=5.0, unit="N")
-    assert evaluate(one, recording, tmp_path).met
-    found = curve(one, recording)
-    assert len(found.times) == WINDOWS and found.times[0] == pytest.approx(END / WINDOWS / 2)
+    expectation = _expectation(field="load.force", axis=None, measure="mean", value=5.0, unit="N")
+    assert evaluate(expectation, recording, tmp_path).met
+    computed = curve(expectation, recording)
+    assert len(computed.times) == WINDOWS and computed.times[0] == pytest.approx(END / WINDOWS / 2)
 
 
 @pytest.mark.parametrize(
@@ -133,8 +137,10 @@ def test_a_vector_without_axis_is_its_magnitude_and_an_impulse_its_mean_rate(tmp
     ],
 )  # fmt: skip
 def test_all_items_come_to_one_number(tmp_path, recording, item, axis, value):
-    one = _expectation(item=item, axis=axis, measure="at", begin=0.5, value=value, within=1e-12)
-    assert evaluate(one, recording, tmp_path).met
+    expectation = _expectation(
+        item=item, axis=axis, measure="at", begin=0.5, value=value, within=1e-12
+    )
+    assert evaluate(expectation, recording, tmp_path).met
     push = {"field": "load.force", "axis": None, "measure": "mean", "value": 5.0, "unit": "N"}
     assert evaluate(_expectation(item=item, **push), recording, tmp_path).met
 
@@ -173,14 +179,14 @@ def test_a_run_that_finished_no_window_meets_nothing(tmp_path, rows):
         recorder.component("cubes", (MOTION,), {})
         for _ in range(rows):
             recorder.add("cubes", Instant(0.0, 0), {"motion.position": np.zeros((2, 3))})
-    with Recording(tmp_path) as found:
-        outcome = evaluate(_expectation(measure="max", value=0.0), found, tmp_path)
+    with Recording(tmp_path) as reader:
+        outcome = evaluate(_expectation(measure="max", value=0.0), reader, tmp_path)
     assert outcome.value is None and not outcome.met
 
 
 def test_a_last_window_that_is_rounded_still_reaches_the_end(tmp_path, recording):
-    one = _expectation(measure="max", end=2.0 * (1 + 1e-12), value=3.0)
-    assert evaluate(one, recording, tmp_path).met
+    expectation = _expectation(measure="max", end=2.0 * (1 + 1e-12), value=3.0)
+    assert evaluate(expectation, recording, tmp_path).met
 
 
 @pytest.mark.parametrize(
@@ -203,12 +209,12 @@ def test_a_last_window_that_is_rounded_still_reaches_the_end(tmp_path, recording
     ],
 )
 def test_a_wrong_expectation_is_refused_with_a_sentence(settings, word):
-    given = {
+    keys = {
         "name": "top.x", "component": "cubes", "field": "motion.position", "within": 0.1,
         "unit": "m", "source": "by hand",
     }  # fmt: skip
-    found, mistakes = read(Expectation, given | settings, "expect[0]")
-    assert found is None
+    expectation, mistakes = read(Expectation, keys | settings, "expect[0]")
+    assert expectation is None
     assert any(word in mistake for mistake in mistakes), mistakes
 
 
@@ -222,8 +228,8 @@ def test_a_wrong_expectation_is_refused_with_a_sentence(settings, word):
     ],
 )
 def test_mistakes_against_the_ports_are_found_before_a_run(tmp_path, settings, word):
-    one = _expectation(**({"measure": "max", "value": 1.0} | settings))
-    mistakes = check(one, {"cubes": (MOTION, LOAD)}, tmp_path)
+    expectation = _expectation(**({"measure": "max", "value": 1.0} | settings))
+    mistakes = check(expectation, {"cubes": (MOTION, LOAD)}, tmp_path)
     assert len(mistakes) == 1 and word in mistakes[0]
 
 
@@ -276,9 +282,9 @@ PROVENANCE = {
 @pytest.mark.parametrize("case", PROVENANCE)
 def test_what_others_found_needs_its_provenance(case):
     settings, sentence = PROVENANCE[case]
-    with pytest.raises(ValueError, match=r"expectation top\.x") as told:
+    with pytest.raises(ValueError, match=r"expectation top\.x") as error_info:
         _expectation(**{"measure": "at", "value": 1.0, **FOREIGN, **settings})
-    assert sentence in str(told.value)
+    assert sentence in str(error_info.value)
 
 
 def test_provenance_that_is_complete_is_taken_and_told(tmp_path, recording):

@@ -20,15 +20,15 @@ def oscillation(begin, end, count, noise=0.0, decay=DECAY):
 @pytest.mark.parametrize(("begin", "end"), [(0.0, 2.0), (0.7, 1.1), (5.0, 6.63)])
 @pytest.mark.parametrize("decay", [DECAY, 0.0, -0.3])
 def test_exact_oscillation_gives_period_and_decay(begin, end, decay):
-    found = fit(oscillation(begin, end, 200, decay=decay))
-    assert found.period == pytest.approx(PERIOD, rel=1e-8)
-    assert found.decay == pytest.approx(decay, abs=1e-7)
+    fitted = fit(oscillation(begin, end, 200, decay=decay))
+    assert fitted.period == pytest.approx(PERIOD, rel=1e-8)
+    assert fitted.decay == pytest.approx(decay, abs=1e-7)
 
 
 def test_noise_moves_them_little():
-    found = fit(oscillation(0.0, 2.0, 400, noise=0.002))  # a tenth of the amplitude
-    assert found.period == pytest.approx(PERIOD, rel=5e-3)
-    assert found.decay == pytest.approx(DECAY, rel=0.1)
+    fitted = fit(oscillation(0.0, 2.0, 400, noise=0.002))  # a tenth of the amplitude
+    assert fitted.period == pytest.approx(PERIOD, rel=5e-3)
+    assert fitted.decay == pytest.approx(DECAY, rel=0.1)
 
 
 def test_what_does_not_oscillate_has_neither():
@@ -46,6 +46,6 @@ def test_relative_distance_is_over_the_size_of_the_reference():
 
 
 def test_a_long_curve_is_fitted_as_well():
-    found = fit(oscillation(0.0, 20.0, 100_000))
-    assert found.period == pytest.approx(PERIOD, rel=1e-8)
-    assert found.decay == pytest.approx(DECAY, abs=1e-7)
+    fitted = fit(oscillation(0.0, 20.0, 100_000))
+    assert fitted.period == pytest.approx(PERIOD, rel=1e-8)
+    assert fitted.decay == pytest.approx(DECAY, abs=1e-7)

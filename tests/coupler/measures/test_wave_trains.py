@@ -22,8 +22,8 @@ def levels(times, places=PLACES, reflection=REFLECTION, second=0.0):
     """Levels (m, k) m of two trains on water 0.4 m deep, the first with a second harmonic."""
     t, x = times[:, np.newaxis], np.array(places)
     omega, k = 2.0 * math.pi / PERIOD, 2.0 * math.pi / LENGTH
-    forth, back = omega * t - k * x, omega * t + k * x + 0.7
-    waves = np.cos(forth) + reflection * np.cos(back) + second * np.cos(2.0 * forth)
+    onward, backward = omega * t - k * x, omega * t + k * x + 0.7
+    waves = np.cos(onward) + reflection * np.cos(backward) + second * np.cos(2.0 * onward)
     return 0.4 + 0.5 * HEIGHT * waves
 
 
@@ -72,7 +72,7 @@ def test_the_height_stays_that_of_the_train_near_nodes(reflection, within, place
 
 
 @pytest.mark.parametrize(
-    ("places", "length", "known"),
+    ("places", "length", "is_known"),
     [
         ((1.0, 1.0 + 0.5 * LENGTH), LENGTH, False),
         ((1.0, 1.0 + 0.47 * LENGTH), LENGTH, False),
@@ -84,13 +84,13 @@ def test_the_height_stays_that_of_the_train_near_nodes(reflection, within, place
         ((1.0, 1.05, 1.1), None, False),
     ],
 )
-def test_places_that_cannot_tell_trains_apart_give_no_value(places, length, known):
+def test_places_that_cannot_tell_trains_apart_give_no_value(places, length, is_known):
     times = np.linspace(0.0, 4 * PERIOD, 300)
     noise = np.random.default_rng(1).normal(0.0, 1e-3, (300, len(places)))
     items = tuple(range(len(places)))
     line = WaveLine(items=items, places=places, period=PERIOD, length=length)
     train = fit(Curve(times, levels(times, places) + noise), line)
-    if known:
+    if is_known:
         assert train[:2] == pytest.approx((HEIGHT, REFLECTION), abs=0.02)
     else:
         assert all(map(math.isnan, train))
@@ -119,12 +119,12 @@ def test_a_recording_of_gauges_gives_each_measure(tmp_path, measure, value, unit
         recorder.component("water", (LEVELS,), {})
         for k, (t, row) in enumerate(zip(times, levels(times), strict=True)):
             recorder.add("water", Instant(t, k), {"level_gauge.height": row})
-    wanted = expectation(measure=measure, value=value, unit=unit)
+    expected = expectation(measure=measure, value=value, unit=unit)
     with Recording(tmp_path / "recording.h5") as recording:
-        outcome = evaluate(wanted, recording, tmp_path)
-        drawn = curve(wanted, recording)
+        outcome = evaluate(expected, recording, tmp_path)
+        computed = curve(expected, recording)
     assert outcome.met and outcome.value == pytest.approx(value, rel=1e-4)
-    assert drawn.values == pytest.approx(levels(times)[:, 0])
+    assert computed.values == pytest.approx(levels(times)[:, 0])
 
 
 def test_places_that_cannot_tell_trains_apart_are_told(tmp_path):
@@ -136,9 +136,9 @@ def test_places_that_cannot_tell_trains_apart_are_told(tmp_path):
         recorder.component("water", (LEVELS,), {})
         for k, (t, row) in enumerate(zip(times, levels(times, places), strict=True)):
             recorder.add("water", Instant(t, k), {"level_gauge.height": row})
-    wanted = expectation(measure="reflection", value=REFLECTION, unit="1", waves=line)
+    expected = expectation(measure="reflection", value=REFLECTION, unit="1", waves=line)
     with Recording(tmp_path / "recording.h5") as recording:
-        outcome = evaluate(wanted, recording, tmp_path)
+        outcome = evaluate(expected, recording, tmp_path)
     assert not outcome.met and outcome.value is None
     assert "the places cannot tell the two trains apart" in outcome.reason
 
@@ -170,6 +170,6 @@ def test_a_line_needs_places_in_order(settings, match):
 
 
 def test_items_that_a_component_lacks_are_named():
-    wanted = [expectation(measure="reflection", value=0.0, unit="1")]
-    sentences = list(lacking_items(wanted, {"water": {"level_gauge.height": np.zeros(3)}}))
+    expectations = [expectation(measure="reflection", value=0.0, unit="1")]
+    sentences = list(lacking_items(expectations, {"water": {"level_gauge.height": np.zeros(3)}}))
     assert len(sentences) == 1 and "item must be below 3" in sentences[0]
