@@ -61,8 +61,8 @@ def run(scene, **options):
 
 def test_importing_the_package_loads_nothing_else():
     program = "import quintet, sys; print(*sys.modules)"
-    found = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
-    names = found.stdout.split()
+    result = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
+    names = result.stdout.split()
     assert {name for name in names if name.startswith("quintet")} == {"quintet"}
     assert not {"numpy", "h5py", "numba", "rich", "importlib.metadata"} & set(names)
 
@@ -85,36 +85,36 @@ def test_a_script_runs_a_scene_and_reads_its_fields(scene):
     path = scene(pong="items = 4")
     script = path.with_name("script.py")
     script.write_text(SCRIPT)
-    done = subprocess.run(
+    result = subprocess.run(
         [sys.executable, str(script)], cwd=path.parent, capture_output=True, text=True, timeout=60
     )
-    assert done.returncode == 0, done.stderr
-    assert done.stdout.splitlines()[-2:] == ["True results (21, 4, 3) m 0.02", "True 4"]
+    assert result.returncode == 0, result.stderr
+    assert result.stdout.splitlines()[-2:] == ["True results (21, 4, 3) m 0.02", "True 4"]
 
 
 @pytest.mark.parametrize(("within", "ok"), [(9.0, True), (0.0, False)])
 def test_a_run_has_results_ledger_and_fields(scene, within, ok):
-    found = run(scene(within))
-    assert found.status == "done" and found.ok is ok
-    assert found.expectations["last"]["met"] is ok
-    assert found.results == json.loads((found.folder / "results.json").read_text())
-    assert found.scene["end"] == 0.02
-    push = found.fields["pong.out.push"]
+    toy_run = run(scene(within))
+    assert toy_run.status == "done" and toy_run.ok is ok
+    assert toy_run.expectations["last"]["met"] is ok
+    assert toy_run.results == json.loads((toy_run.folder / "results.json").read_text())
+    assert toy_run.scene["end"] == 0.02
+    push = toy_run.fields["pong.out.push"]
     assert push.unit == "N s" and push.values.shape == (21, 5, 3) and len(push.times) == 21
-    assert "pong.out.push" in found.fields and "pong.out.pull" not in found.fields
+    assert "pong.out.push" in toy_run.fields and "pong.out.pull" not in toy_run.fields
     with pytest.raises(KeyError, match=r"Did you mean pong\.out\.push"):
-        found.fields["pong.out.pushh"]
-    work = found.ledger["ping-pong"]["work_given"]
+        toy_run.fields["pong.out.pushh"]
+    work = toy_run.ledger["ping-pong"]["work_given"]
     assert work.unit == "J" and work.values.shape == work.times.shape
-    assert "toy: done, 20 windows" in str(found)
+    assert "toy: done, 20 windows" in str(toy_run)
 
 
 def test_a_run_can_be_opened_later(scene):
     first = run(scene())
-    again = quintet.load(first.folder)
-    assert again.results == first.results
+    reopened = quintet.load(first.folder)
+    assert reopened.results == first.results
     for key in first.fields:
-        assert np.array_equal(again.fields[key], first.fields[key])
+        assert np.array_equal(reopened.fields[key], first.fields[key])
     with pytest.raises(SceneError, match=r"it has no results\.json"):
         quintet.load(first.folder / "log")
 
@@ -123,18 +123,18 @@ def test_a_run_can_be_opened_later(scene):
 def test_every_transport_gives_the_same_bits_from_python(scene, transport):
     path = scene()
     first = run(path)
-    other = quintet.run(path, transport=transport, out=path.parent / "other")
-    assert other.results["transport"] == transport
-    assert compare(first.folder, other.folder) is None
+    second = quintet.run(path, transport=transport, out=path.parent / "other")
+    assert second.results["transport"] == transport
+    assert compare(first.folder, second.folder) is None
 
 
 def test_the_command_in_the_results_gives_the_same_bits(scene, tmp_path):
-    found = run(scene(), settings={"components.pong.substeps": np.int64(3)})
-    command = found.results["command"].split()
+    toy_run = run(scene(), settings={"components.pong.substeps": np.int64(3)})
+    command = toy_run.results["command"].split()
     assert command[:2] == ["quintet", "run"] and "components.pong.substeps=3" in command
     line = [sys.executable, "-m", "quintet.coupler.cli", *command[1:], "--out", "again"]
     subprocess.run(line, cwd=tmp_path, check=True, capture_output=True, timeout=60)
-    assert compare(found.folder, tmp_path / "again") is None
+    assert compare(toy_run.folder, tmp_path / "again") is None
 
 
 def test_mistakes_of_a_scene_are_raised_and_nothing_is_started(scene):
@@ -153,39 +153,39 @@ def test_a_plan_tells_what_a_run_will_need(scene):
 
 @pytest.mark.parametrize("transport", ["memory", *OVER])
 def test_a_failed_run_is_raised_with_its_folder(scene, transport):
-    with pytest.raises(RunError, match=r"pong failed in window 7: .*asked to raise") as raised:
+    with pytest.raises(RunError, match=r"pong failed in window 7: .*asked to raise") as error_info:
         run(scene(pong="fails_at = 7"), transport=transport)
-    found = quintet.load(raised.value.folder)
-    assert found.status == "failed" and not found.ok
+    failed_run = quintet.load(error_info.value.folder)
+    assert failed_run.status == "failed" and not failed_run.ok
 
 
 def test_an_interrupted_run_is_continued_to_the_same_bits(scene):
     path = scene(end=1.0, pong="pause = 1e-3")
-    whole = quintet.run(path, out=path.parent / "whole")
+    reference = quintet.run(path, out=path.parent / "whole")
     threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT)).start()
     first = run(path)
     assert first.status == "interrupted" and not first.ok
     assert quintet.resume(first.folder).status == "done"
-    assert compare(whole.folder, first.folder) is None
+    assert compare(reference.folder, first.folder) is None
 
 
 def test_a_run_in_another_thread_leaves_signals_alone(scene):
-    path, found = scene(), []
-    thread = threading.Thread(target=lambda: found.append(run(path)))
+    path, runs = scene(), []
+    thread = threading.Thread(target=lambda: runs.append(run(path)))
     thread.start()
     thread.join()
-    assert found[0].ok
+    assert runs[0].ok
 
 
 def test_a_notebook_shows_tables_and_pictures(scene):
-    found = run(scene())
-    assert found._repr_png_() is None
-    picture = found.folder / "scene.png"
+    toy_run = run(scene())
+    assert toy_run._repr_png_() is None
+    picture = toy_run.folder / "scene.png"
     matplotlib.image.imsave(picture, np.zeros((4, 4, 3)))
-    html = found._repr_html_()
+    html = toy_run._repr_html_()
     assert "expectation" in html and "ping-pong" in html
     assert html.count("data:image/png;base64,") == 1
-    assert found._repr_png_() == picture.read_bytes()
+    assert toy_run._repr_png_() == picture.read_bytes()
 
 
 @pytest.mark.parametrize("widgets", [None, "installed"])
