@@ -66,10 +66,10 @@ def test_what_is_wrong_by_itself_is_refused(validator, mutant):
     table = deepcopy(parse(SCENES["floating_cube"]))
     if value is None:
         *heads, last = path.split(".")
-        at = table
+        node = table
         for head in heads:
-            at = at[head]
-        del at[last]
+            node = node[head]
+        del node[last]
     else:
         assert put(table, path, value) == []
     assert mistakes(validator, table)
@@ -78,20 +78,20 @@ def test_what_is_wrong_by_itself_is_refused(validator, mutant):
 def test_every_key_is_described_and_tells_its_unit():
     def properties(schema):
         if isinstance(schema, dict):
-            if isinstance(found := schema.get("properties"), dict) and "if" not in schema:
-                yield from found.items()
-            for name, one in schema.items():
+            if isinstance(members := schema.get("properties"), dict) and "if" not in schema:
+                yield from members.items()
+            for name, child in schema.items():
                 if name != "if":
-                    yield from properties(one)
+                    yield from properties(child)
         elif isinstance(schema, list):
-            for one in schema:
-                yield from properties(one)
+            for child in schema:
+                yield from properties(child)
 
     schema = scene_schema()
     del schema["properties"]["stand_ins"]["additionalProperties"]["properties"]  # named by kinds
-    found = list(properties(schema))
-    assert len(found) > 200
-    assert [name for name, one in found if not one.get("description")] == []
+    members = list(properties(schema))
+    assert len(members) > 200
+    assert [name for name, child in members if not child.get("description")] == []
     spacing = schema["definitions"]["component.sph_fluid"]["properties"]["spacing"]
     assert spacing == {
         "description": "Between particles. Unit: m.",
@@ -105,15 +105,15 @@ def test_every_key_is_described_and_tells_its_unit():
 
 def test_references_are_addresses_that_lead_to_definitions():
     text = json.dumps(schema := scene_schema())
-    found = set(re.findall(r'"\$ref": "#/definitions/(.*?)"', text))
-    assert found == schema["definitions"].keys()
-    assert all(re.fullmatch(r"[A-Za-z0-9_.:-]+", name) for name in found)  # no blanks: RFC 3986
+    names = set(re.findall(r'"\$ref": "#/definitions/(.*?)"', text))
+    assert names == schema["definitions"].keys()
+    assert all(re.fullmatch(r"[A-Za-z0-9_.:-]+", name) for name in names)  # no blanks: RFC 3986
 
 
 def test_the_command_prints_it_and_knows_the_classes_of_a_scene(capsys):
-    with pytest.raises(SystemExit) as ended:
+    with pytest.raises(SystemExit) as exit_info:
         main(["schema", "two_springs"])
-    assert ended.value.code == 0
+    assert exit_info.value.code == 0
     validator = jsonschema.Draft7Validator(json.loads(capsys.readouterr().out))
     text = SCENES["two_springs"].read_text()
     assert mistakes(validator, tomllib.loads(text)) == []

@@ -1,4 +1,4 @@
-"""What `quintet new` writes runs as it stands, and overwrites nothing."""
+"""A starting point of `quintet new` runs unchanged, and overwrites nothing."""
 
 import os
 import subprocess
@@ -14,16 +14,16 @@ from quintet.interfaces.errors import SceneError
 
 
 @pytest.fixture
-def begun(tmp_path, monkeypatch):
+def write_start(tmp_path, monkeypatch):
     """Write a starting point, and offer its entry points to the processes that this one starts."""
     monkeypatch.chdir(tmp_path)
 
-    def begin(what, name):
-        with pytest.raises(SystemExit) as ended:
-            main(["new", what, name])
-        assert ended.value.code == 0
+    def begin(template, name):
+        with pytest.raises(SystemExit) as exit_info:
+            main(["new", template, name])
+        assert exit_info.value.code == 0
         folder = tmp_path / name
-        if what != "scene":
+        if template != "scene":
             project = tomllib.loads((folder / "pyproject.toml").read_text())["project"]
             info = folder / f"{name}-{project['version']}.dist-info"
             info.mkdir()
@@ -37,40 +37,42 @@ def begun(tmp_path, monkeypatch):
     return begin
 
 
-def test_a_new_scene_meets_its_exact_solution(begun, capsys):
-    folder = begun("scene", "first_try")
+def test_a_new_scene_meets_its_exact_solution(write_start, capsys):
+    folder = write_start("scene", "first_try")
     assert "quintet run first_try/scene.toml" in capsys.readouterr().out
-    with pytest.raises(SystemExit) as ended:
+    with pytest.raises(SystemExit) as exit_info:
         main(["run", str(folder / "scene.toml"), "--out", str(folder / "run")])
-    assert ended.value.code == 0
+    assert exit_info.value.code == 0
     expectations = results(folder / "run")["expect"]
     assert [outcome["met"] for outcome in expectations] == [True]
     assert results(folder / "run")["scene"] == "first_try"
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("what", "name"), [("component", "tether_line"), ("link", "rider")])
-def test_a_new_package_passes_its_own_tests(begun, what, name):
-    folder = begun(what, name)
+@pytest.mark.parametrize(("template", "name"), [("component", "tether_line"), ("link", "rider")])
+def test_a_new_package_passes_its_own_tests(write_start, template, name):
+    folder = write_start(template, name)
     command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", str(folder)]
-    ended = subprocess.run(command, cwd=folder, env=os.environ, capture_output=True, text=True)
-    assert ended.returncode == 0, ended.stdout + ended.stderr
-    assert f"{2 if what == 'component' else 1} passed" in ended.stdout
+    result = subprocess.run(command, cwd=folder, env=os.environ, capture_output=True, text=True)
+    assert result.returncode == 0, result.stdout + result.stderr
+    assert f"{2 if template == 'component' else 1} passed" in result.stdout
 
 
-@pytest.mark.parametrize("what", TEMPLATES)
-def test_the_name_of_the_example_is_gone(what):
-    old = TEMPLATES[what].name
-    files = starting_point(what, "brand_new")
+@pytest.mark.parametrize("template", TEMPLATES)
+def test_the_name_of_the_example_is_gone(template):
+    example_name = TEMPLATES[template].name
+    files = starting_point(template, "brand_new")
     assert "scene.toml" in files
     for path, text in files.items():
-        assert old not in path
-        assert old not in text.replace(f"{old} lines", "").replace(f"{old} line", "")
-        assert f"class {old.capitalize()}" not in text
+        assert example_name not in path
+        assert example_name not in text.replace(f"{example_name} lines", "").replace(
+            f"{example_name} line", ""
+        )
+        assert f"class {example_name.capitalize()}" not in text
 
 
 @pytest.mark.parametrize(
-    ("what", "name", "said"),
+    ("template", "name", "message"),
     [
         ("scene", "two_springs", "a scene that is installed"),
         ("component", "echo", "a component that is installed"),
@@ -81,9 +83,9 @@ def test_the_name_of_the_example_is_gone(what):
         ("component", "My-Solver", "must be lower-case letters"),
     ],
 )
-def test_names_that_cannot_be_used_are_refused(tmp_path, what, name, said):
-    with pytest.raises(SceneError, match=said):
-        write_new(what, name, tmp_path / "new")
+def test_names_that_cannot_be_used_are_refused(tmp_path, template, name, message):
+    with pytest.raises(SceneError, match=message):
+        write_new(template, name, tmp_path / "new")
     assert list(tmp_path.iterdir()) == []
 
 
