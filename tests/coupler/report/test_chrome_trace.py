@@ -1,4 +1,4 @@
-"""A trace has the form that viewers read, says when each component computed, and changes no bit."""
+"""A trace has the form that viewers read, times each component's computing, and changes no bit."""
 
 import json
 import subprocess
@@ -50,18 +50,18 @@ def tracks_of(events):
     return tracks
 
 
-def traced(scene, *arguments):
+def run_with_trace(scene, *arguments):
     """Run a scene with its trace; return the folder, and the slices of each track."""
-    started = Started(scene, "--trace", *arguments)
-    assert started.wait() == 0, started.err
-    assert command("trace", started.folder) == 0
-    return started.folder, tracks_of(events_of(started.folder / "trace.json"))
+    traced_run = Started(scene, "--trace", *arguments)
+    assert traced_run.wait() == 0, traced_run.err
+    assert command("trace", traced_run.folder) == 0
+    return traced_run.folder, tracks_of(events_of(traced_run.folder / "trace.json"))
 
 
 @pytest.mark.parametrize("transport", TRANSPORTS)
 def test_each_window_of_each_component_is_a_slice_as_long_as_it_computed(tmp_path, transport):
     scene = write_scene(tmp_path, transport, 0.02, pong="pause = 2e-3")
-    folder, tracks = traced(scene)
+    folder, tracks = run_with_trace(scene)
     assert tracks.keys() == {"coupler", "ping", "pong"}
     timing = json.loads((folder / "results.json").read_text())["timing"]["components"]
     for name in ("ping", "pong"):
@@ -73,8 +73,8 @@ def test_each_window_of_each_component_is_a_slice_as_long_as_it_computed(tmp_pat
     windows = [event for event in tracks["coupler"] if event["cat"] == "window"]
     assert [event["args"]["window"] for event in windows] == list(range(20))
     assert sum(event["args"]["length [s]"] for event in windows) == pytest.approx(0.02)
-    known = Counter(event["name"] for event in tracks["coupler"])
-    assert known["mapping"] >= 20 and known["wait for pong"] >= 20
+    counts = Counter(event["name"] for event in tracks["coupler"])
+    assert counts["mapping"] >= 20 and counts["wait for pong"] >= 20
     waits = [e["dur"] for e in tracks["coupler"] if e["name"] == "wait for pong"]
     assert sum(waits) > 20 * 2e3, "µs, of its pauses"
 
@@ -82,47 +82,49 @@ def test_each_window_of_each_component_is_a_slice_as_long_as_it_computed(tmp_pat
 @pytest.mark.parametrize("scheme", ["parallel", "iterated"])
 def test_slices_of_all_schemes_are_nested(tmp_path, scheme):
     scene = write_scene(tmp_path, end=0.01)
-    folder, tracks = traced(scene, "--set", f"scheme={scheme}")
+    folder, tracks = run_with_trace(scene, "--set", f"scheme={scheme}")
     repetitions = json.loads((folder / "results.json").read_text())["repetitions"]
-    counted = [e["args"]["repetitions"] for e in tracks["coupler"] if e["cat"] == "window"]
-    assert sum(counted) == repetitions and (repetitions > 0) == (scheme == "iterated")
+    window_repetitions = [
+        e["args"]["repetitions"] for e in tracks["coupler"] if e["cat"] == "window"
+    ]
+    assert sum(window_repetitions) == repetitions and (repetitions > 0) == (scheme == "iterated")
     steps = [event for event in tracks["pong"] if event["name"] == "step"]
     assert len(steps) == 10 + repetitions
 
 
 def test_a_trace_changes_no_result_and_none_is_left_without(tmp_path):
     scene = write_scene(tmp_path, end=0.05)
-    plain = Started(scene, out=tmp_path / "plain")
-    assert plain.wait() == 0
-    folder, _ = traced(scene)
-    assert same(plain.folder, folder)
-    assert (folder / "trace.csv").is_file() and not (plain.folder / "trace.csv").exists()
+    reference = Started(scene, out=tmp_path / "plain")
+    assert reference.wait() == 0
+    folder, _ = run_with_trace(scene)
+    assert same(reference.folder, folder)
+    assert (folder / "trace.csv").is_file() and not (reference.folder / "trace.csv").exists()
 
 
 def test_a_run_without_trace_loads_none_of_it(tmp_path):
     scene = write_scene(tmp_path, end=0.01)
     program = "import sys; from quintet.coupler.cli import main\ntry: main()\n"
     program += "finally: print('quintet.coupler.run.trace_log' in sys.modules)"
-    for words, answer in (((), "False"), (("--trace",), "True")):
+    for options, answer in (((), "False"), (("--trace",), "True")):
         out = ("--out", str(tmp_path / answer))
-        line = [sys.executable, "-c", program, "run", str(scene), *out, *words]
-        done = subprocess.run(line, capture_output=True, text=True)
-        assert done.returncode == 0 and done.stdout.split()[-1] == answer, done.stderr
+        line = [sys.executable, "-c", program, "run", str(scene), *out, *options]
+        result = subprocess.run(line, capture_output=True, text=True)
+        assert result.returncode == 0 and result.stdout.split()[-1] == answer, result.stderr
 
 
 def test_a_resumed_run_goes_on_with_its_trace(tmp_path):
     scene = write_scene(tmp_path, end=1.0, pong="pause = 2e-3")
-    started = Started(scene, "--trace")
-    started.wait_until(lambda: (started.folder / "trace.csv").is_file()
-                       and (started.folder / "trace.csv").stat().st_size > 20_000)  # fmt: skip
-    started.process.terminate()
-    assert started.wait() == 130
-    with open(started.folder / "trace.csv", "a") as file:
+    traced_run = Started(scene, "--trace")
+    traced_run.wait_until(lambda: (traced_run.folder / "trace.csv").is_file()
+                       and (traced_run.folder / "trace.csv").stat().st_size > 20_000)  # fmt: skip
+    traced_run.process.terminate()
+    assert traced_run.wait() == 130
+    with open(traced_run.folder / "trace.csv", "a") as file:
         file.write("pong,adv")  # as by a full disk, or a kill
-    resumed = Started(scene, out=started.folder, resumes=True)
-    assert resumed.wait() == 0
-    assert command("trace", started.folder) == 0
-    tracks = tracks_of(events_of(started.folder / "trace.json"))
+    resumed_run = Started(scene, out=traced_run.folder, resumes=True)
+    assert resumed_run.wait() == 0
+    assert command("trace", traced_run.folder) == 0
+    tracks = tracks_of(events_of(traced_run.folder / "trace.json"))
     windows = [e["args"]["window"] for e in tracks["coupler"] if e["cat"] == "window"]
     assert windows == list(range(1000))
 
@@ -143,8 +145,10 @@ def test_wrong_input_is_told(tmp_path, capsys):
     out = tmp_path / "out"
     assert command("run", scene, "--out", out) == 0
     assert command("trace", out) == 2
-    said = "it must have a trace (trace.csv); this run was made without. Run the scene again with"
-    assert said in capsys.readouterr().err
+    message = (
+        "it must have a trace (trace.csv); this run was made without. Run the scene again with"
+    )
+    assert message in capsys.readouterr().err
     assert command("trace", tmp_path / "none") == 2
     assert "it must be the folder of a run; it is not" in capsys.readouterr().err
     assert command("run", "--resume", out, "--trace") == 2

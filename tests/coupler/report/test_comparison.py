@@ -1,4 +1,4 @@
-"""Computed curves are drawn against what is expected of them, one panel for each curve."""
+"""Computed curves are drawn against their expectations, one panel for each curve."""
 
 from dataclasses import replace
 
@@ -32,15 +32,15 @@ def figure(monkeypatch, tmp_path):
             row = {"motion.position": np.array([[0.02 * k, 0.0, 0.0]])}
             recorder.add("cubes", Instant(0.02 * k, k), row)
     (tmp_path / "ref.csv").write_text("t,x\n0,0\n0.5,0.52\n0.9,0.9\n")
-    kept = []
+    figures = []
 
-    def draw(*ones, **options):
-        monkeypatch.setattr(drawing, "save", lambda figure, out: kept.append(figure) or out)
+    def draw(*expectations, **options):
+        monkeypatch.setattr(drawing, "save", lambda figure, out: figures.append(figure) or out)
         with Recording(tmp_path) as recording:
-            outcomes = [evaluate(one, recording, tmp_path) for one in ones]
+            outcomes = [evaluate(expectation, recording, tmp_path) for expectation in expectations]
             out = tmp_path / "c.png"
-            found = comparison(tmp_path, ones, outcomes, recording, out, **options)
-        return kept[-1] if found else None
+            is_drawn = comparison(tmp_path, expectations, outcomes, recording, out, **options)
+        return figures[-1] if is_drawn else None
 
     return draw
 
@@ -56,15 +56,24 @@ def test_expectations_of_one_curve_share_a_panel(figure):
 @pytest.mark.parametrize("preset", ["quick", "standard"])
 def test_curves_of_the_main_job_have_one_panel_each(preset):
     scene = load("dam_break_cubes", preset)
-    assert sum(one.csv is not None for one in scene.expect) == 2
-    assert len({drawing._curve_of(one) for one in scene.expect if one.csv is not None}) == 1
+    assert sum(expectation.csv is not None for expectation in scene.expect) == 2
+    assert (
+        len(
+            {
+                drawing._curve_of(expectation)
+                for expectation in scene.expect
+                if expectation.csv is not None
+            }
+        )
+        == 1
+    )
 
 
 def test_curves_have_axes_with_names_and_units(figure):
-    drawn = figure(X_RMS, TOP, title="a scene", values=True)
-    assert drawn.get_suptitle() == "a scene"
-    assert [panel.get_xlabel() for panel in drawn.axes] == ["t [s]", "t [s]"]
-    names = [panel.get_ylabel() for panel in drawn.axes]
+    picture = figure(X_RMS, TOP, title="a scene", values=True)
+    assert picture.get_suptitle() == "a scene"
+    assert [panel.get_xlabel() for panel in picture.axes] == ["t [s]", "t [s]"]
+    names = [panel.get_ylabel() for panel in picture.axes]
     assert names == ["position x of cubes [m]", "position x of cubes, plus 0.5 m [m]"]
 
 
@@ -88,12 +97,12 @@ def test_an_expected_oscillation_has_the_computed_phase(tmp_path, monkeypatch):
             place = 0.3 + 0.1 * np.exp(-0.2 * t) * np.sin(5.0 * t)
             recorder.add("cubes", Instant(t, k), {"motion.position": np.array([[place, 0.0, 0.0]])})
     period = Expectation(name="period", measure="period", value=1.3, within=1.0, **COMMON)
-    kept = []
-    monkeypatch.setattr(drawing, "save", lambda figure, out: kept.append(figure) or out)
+    figures = []
+    monkeypatch.setattr(drawing, "save", lambda figure, out: figures.append(figure) or out)
     with Recording(tmp_path) as recording:
         outcomes = [evaluate(period, recording, tmp_path)]
         comparison(tmp_path, [period], outcomes, recording, tmp_path / "c.png", values=True)
-    line = kept[0].axes[0].get_lines()[1]
+    line = figures[0].axes[0].get_lines()[1]
     assert line.get_label() == "as fitted to it, but with the expected period"
     t, x = line.get_data()
     expected = 0.3 + 0.1 * np.exp(-0.2 * t) * np.sin(2.0 * np.pi / 1.3 * t)
@@ -115,6 +124,6 @@ def test_a_curve_with_a_reference_file_and_a_value_has_both(figure):
 
 
 def test_a_run_that_ended_early_says_which_time_it_did_not_reach(figure):
-    late = Expectation(name="late", measure="at", begin=3.0, value=1.0, within=0.1, **COMMON)
-    (panel,) = figure(late, values=True).axes
+    expectation = Expectation(name="late", measure="at", begin=3.0, value=1.0, within=0.1, **COMMON)
+    (panel,) = figure(expectation, values=True).axes
     assert panel.get_title() == "late: at 3 s: not reached (t = 3 s)"

@@ -52,27 +52,27 @@ def test_the_first_different_bit_is_found_over_all_components(tmp_path, original
             force = fields["water"]["surface_load.force"]
             force[5, 1] = np.nextafter(force[5, 1], 2.0)
 
-    found = compare(original, _record(tmp_path / "b.h5", change))
-    assert found is not None and found.kind == "value"
-    assert (found.component, found.field) == ("water", "surface_load.force")
-    assert (found.window, found.item, found.index) == (97, 5, (1,))
-    assert found.b == np.nextafter(found.a, 2.0)
-    assert "window 97 (t = 0.97 s): water.surface_load.force, item 5[1]" in sentence(found)
+    difference = compare(original, _record(tmp_path / "b.h5", change))
+    assert difference is not None and difference.kind == "value"
+    assert (difference.component, difference.field) == ("water", "surface_load.force")
+    assert (difference.window, difference.item, difference.index) == (97, 5, (1,))
+    assert difference.b == np.nextafter(difference.a, 2.0)
+    assert "window 97 (t = 0.97 s): water.surface_load.force, item 5[1]" in sentence(difference)
 
 
 def test_zero_and_minus_zero_differ_but_nan_is_itself(tmp_path):
-    def odd(zero):
+    def write_zero(zero):
         def change(k, fields):
             fields["water"]["surface_load.force"][0] = (np.nan, np.inf, zero)
 
         return change
 
-    a = _record(tmp_path / "a.h5", odd(0.0))
-    assert compare(a, _record(tmp_path / "same.h5", odd(0.0))) is None
-    found = compare(a, _record(tmp_path / "b.h5", odd(-0.0)))
-    assert found is not None
-    assert (found.window, found.item, found.index) == (0, 0, (2,))
-    assert "0.0" in sentence(found) and "-0.0" in sentence(found)
+    a = _record(tmp_path / "a.h5", write_zero(0.0))
+    assert compare(a, _record(tmp_path / "same.h5", write_zero(0.0))) is None
+    difference = compare(a, _record(tmp_path / "b.h5", write_zero(-0.0)))
+    assert difference is not None
+    assert (difference.window, difference.item, difference.index) == (0, 0, (2,))
+    assert "0.0" in sentence(difference) and "-0.0" in sentence(difference)
 
 
 @pytest.mark.parametrize(
@@ -87,9 +87,9 @@ def test_zero_and_minus_zero_differ_but_nan_is_itself(tmp_path):
     ],
 )
 def test_what_is_laid_out_differently_is_named(tmp_path, original, settings, kind, word):
-    found = compare(original, _record(tmp_path / "b.h5", **settings))
-    assert found is not None and found.kind == kind
-    assert word in sentence(found)
+    difference = compare(original, _record(tmp_path / "b.h5", **settings))
+    assert difference is not None and difference.kind == kind
+    assert word in sentence(difference)
 
 
 def test_different_numbers_of_items_are_named(tmp_path):
@@ -98,45 +98,45 @@ def test_different_numbers_of_items_are_named(tmp_path):
         with Recorder(path, "", "") as recorder:
             recorder.component("water", (SURFACE_LOAD,), {})
             recorder.add("water", Instant(0.0, 0), {"surface_load.force": np.zeros((n, 3))})
-    found = compare(a, b)
-    assert found is not None and found.kind == "items"
-    assert "(3, 3) against shape (4, 3)" in sentence(found)
+    difference = compare(a, b)
+    assert difference is not None and difference.kind == "items"
+    assert "(3, 3) against shape (4, 3)" in sentence(difference)
 
 
 def test_windows_at_different_times_differ(tmp_path, original):
     b = _record(tmp_path / "b.h5", ticks={7: 50})
-    found = compare(original, b)
-    assert found is not None and (found.kind, found.window) == ("time", 7)
-    assert "at 0.07 s against 0.5 s" in sentence(found)
+    difference = compare(original, b)
+    assert difference is not None and (difference.kind, difference.window) == ("time", 7)
+    assert "at 0.07 s against 0.5 s" in sentence(difference)
 
 
 def test_fields_that_both_have_are_compared_though_each_has_others(tmp_path, capsys):
-    """A value that differs is found; fields and components of one alone are named beside it."""
+    """A different value is found; fields and components of only one recording are named too."""
 
     def change(k, fields):
         if k == 7:
             fields["cubes"]["motion.position"][2, 1] = 5.0
 
-    few = replace(MOTION, fields=MOTION.fields[:2])
-    a = _record(tmp_path / "a.h5", port=few)
-    same, changed = (
+    short_port = replace(MOTION, fields=MOTION.fields[:2])
+    a = _record(tmp_path / "a.h5", port=short_port)
+    equal, changed = (
         _record(tmp_path / name, edit, names=("cubes",))
         for name, edit in (("b.h5", None), ("c.h5", change))
     )
-    found = compare(a, changed)
-    assert found is not None and (found.kind, found.window) == ("value", 7)
-    assert compare(a, same).kind == "names" and compare(a, same).shared == 2
-    others = [f"cubes.motion.{field.name}" for field in MOTION.fields[2:]]
-    assert only_in_one(a, same) == (["water.surface_load.force"], sorted(others))
-    with pytest.raises(SystemExit) as ended:
+    difference = compare(a, changed)
+    assert difference is not None and (difference.kind, difference.window) == ("value", 7)
+    assert compare(a, equal).kind == "names" and compare(a, equal).shared == 2
+    other_fields = [f"cubes.motion.{field.name}" for field in MOTION.fields[2:]]
+    assert only_in_one(a, equal) == (["water.surface_load.force"], sorted(other_fields))
+    with pytest.raises(SystemExit) as exit_info:
         main(["diff", str(a), str(changed)])
-    assert ended.value.code == 1
-    told = capsys.readouterr().out
-    assert "window 7" in told and f"Only {a} has: water.surface_load.force.\n" in told
-    assert f"Only {changed} has: {', '.join(sorted(others))}.\n" in told
+    assert exit_info.value.code == 1
+    output = capsys.readouterr().out
+    assert "window 7" in output and f"Only {a} has: water.surface_load.force.\n" in output
+    assert f"Only {changed} has: {', '.join(sorted(other_fields))}.\n" in output
 
 
 def test_recordings_without_a_field_in_common_are_not_the_same(tmp_path):
     a, b = (_record(tmp_path / f"{name}.h5", names=(name,)) for name in ("cubes", "water"))
-    found = compare(a, b)
-    assert found is not None and "no field in common" in sentence(found)
+    difference = compare(a, b)
+    assert difference is not None and "no field in common" in sentence(difference)

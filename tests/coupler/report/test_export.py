@@ -1,4 +1,4 @@
-"""What a run recorded goes on to other programs: with units, times and names, and nothing else."""
+"""A run's recording is exported to other programs with units, times and names."""
 
 import csv
 import sys
@@ -108,7 +108,7 @@ def test_names_of_columns_say_field_item_axis_and_unit():
 def test_wide_fields_are_left_out_unless_they_are_named(folder, tmp_path, monkeypatch, capsys):
     monkeypatch.setattr("quintet.coupler.report.columns.MOST", 2)
     assert command("export", folder, "--out", tmp_path / "a") == 0
-    assert "left out" in (told := capsys.readouterr().out) and "spring.motion.velocity" in told
+    assert "left out" in (output := capsys.readouterr().out) and "spring.motion.velocity" in output
     assert command("export", folder, "spring.motion", "--out", tmp_path / "b") == 0
     assert (tmp_path / "b/spring.motion.csv").is_file()
 
@@ -148,9 +148,9 @@ def test_recorded_fields_are_drawn_though_nothing_is_expected_of_them(folder, mo
     monkeypatch.setattr(drawing, "save", lambda f, out: figures.append(f) or save(f, out))
     assert command("draw", folder, "--series") == 0
     assert (folder / "series.png").is_file()
-    first, other = figures[0].axes
+    first, second = figures[0].axes
     assert first.get_ylabel() == "velocity [m/s]" and len(first.lines) == 3
-    assert other.get_ylabel() == "force [N]" and "mean over each window" in other.get_title()
+    assert second.get_ylabel() == "force [N]" and "mean over each window" in second.get_title()
     x = quintet.load(folder).fields["spring.motion.velocity"]
     np.testing.assert_array_equal(first.lines[0].get_ydata(), x.values[:, 0, 0])
 

@@ -28,26 +28,26 @@ def nodes(tmp_path):
 def test_holes_between_nodes_are_left_open(nodes):
     from matplotlib.tri import Triangulation
 
-    shown = read(nodes, 0.0, {"gas": "density"})
-    assert is_field(shown)
-    triangles = Triangulation(shown.points[:, 0], shown.points[:, 2]).triangles
-    centres = shown.points[triangles].mean(axis=1)
+    view = read(nodes, 0.0, {"gas": "density"})
+    assert is_field(view)
+    triangles = Triangulation(view.points[:, 0], view.points[:, 2]).triangles
+    centres = view.points[triangles].mean(axis=1)
     inside = np.hypot(centres[:, 0] - 1.0, centres[:, 2] - 0.5) < 0.1
-    masked = spans_a_hole(shown.points, shown.spacing, triangles)
+    masked = spans_a_hole(view.points, view.spacing, triangles)
     assert masked[inside].all()
     outside = np.hypot(centres[:, 0] - 1.0, centres[:, 2] - 0.5) > 0.45
     assert not masked[outside].any()
 
 
 def test_a_cloud_that_fills_space_is_drawn_as_points(nodes):
-    shown = read(nodes, 0.0, {"gas": "density"})
-    shown.points[:, 1] = np.linspace(0.0, 1.0, len(shown.points))
-    assert not is_field(shown)
+    view = read(nodes, 0.0, {"gas": "density"})
+    view.points[:, 1] = np.linspace(0.0, 1.0, len(view.points))
+    assert not is_field(view)
 
 
 def test_schlieren_pictures_are_grey(nodes):
     views = [[read(nodes, 0.0, {"gas": name})] for name in ("density", "schlieren")]
-    assert [one.cmap.name for one in colour_scales(views, {}).values()] == ["viridis", "gray"]
+    assert [scale.cmap.name for scale in colour_scales(views, {}).values()] == ["viridis", "gray"]
 
 
 def test_a_field_is_filled_between_its_nodes_and_has_no_marks(nodes):
@@ -57,6 +57,6 @@ def test_a_field_is_filled_between_its_nodes_and_has_no_marks(nodes):
     views = [[read(nodes, 0.0, {"gas": "density"})]]
     panel = Figure().subplots()
     draw_view(panel, views[0], colour_scales(views, {}), diameters(views[0]))
-    (drawn,) = panel.collections
-    assert isinstance(drawn, TriMesh)
-    assert drawn.get_array().max() == pytest.approx(2.0 - STEP)
+    (mesh,) = panel.collections
+    assert isinstance(mesh, TriMesh)
+    assert mesh.get_array().max() == pytest.approx(2.0 - STEP)

@@ -1,4 +1,4 @@
-"""The page of a run is whole, shows what the run left, and needs nothing else."""
+"""The page of a run is complete, shows the run's results, and needs no other file."""
 
 import base64
 import io
@@ -48,13 +48,13 @@ class Page(HTMLParser):
 
 
 def _call(*arguments):
-    with pytest.raises(SystemExit) as ended:
+    with pytest.raises(SystemExit) as exit_info:
         main(list(map(str, arguments)))
-    return ended.value.code
+    return exit_info.value.code
 
 
-def _page(folder, *more):
-    assert _call("report", folder, *more) == 0
+def _page(folder, *options):
+    assert _call("report", folder, *options) == 0
     return Page((folder / "report.html").read_text(encoding="utf-8"))
 
 
@@ -126,8 +126,8 @@ def test_energies_are_drawn_of_the_components_that_tell_them():
     }
     still = {"kinetic": Series(np.zeros(3), times, "J")}
     ledger = {"ball": moving, "plate": still}
-    drawn = ElementTree.fromstring(figures.energies(ledger))
-    assert drawn.tag.endswith("svg")
+    root = ElementTree.fromstring(figures.energies(ledger))
+    assert root.tag.endswith("svg")
     assert figures.energies(ledger) == figures.energies(ledger), "the same bytes"
     assert figures.energies({"plate": still}) == ""
     _, total = figures._sum(moving)
@@ -163,11 +163,11 @@ def test_large_pictures_are_compressed(springs, tmp_path, monkeypatch):
 
 
 def test_what_is_there_is_not_replaced_and_what_lacks_is_told(springs, tmp_path, capsys):
-    mine = tmp_path / "mine.html"
-    mine.write_text("mine")
-    assert _call("report", springs, "--out", mine) == 2
+    path = tmp_path / "mine.html"
+    path.write_text("mine")
+    assert _call("report", springs, "--out", path) == 2
     assert "it exists. Name another file, or use --force." in capsys.readouterr().err
-    assert mine.read_text() == "mine"
+    assert path.read_text() == "mine"
     assert _call("report", springs, "--out", tmp_path / "a.pdf") == 2
     assert "must end with one of .html; found .pdf" in capsys.readouterr().err
     assert _call("report", tmp_path) == 2
@@ -189,8 +189,8 @@ def test_a_browser_shows_the_page_without_an_error(springs, tmp_path):
     picture, page = tmp_path / "page.png", (springs / "report.html").as_uri()
     command = [browser, "--headless", "--no-sandbox", "--disable-gpu", "--enable-logging=stderr"]
     command += ["--window-size=1200,3000", f"--screenshot={picture}", page]
-    shown = subprocess.run(command, capture_output=True, text=True, timeout=120, check=True)
-    assert "CONSOLE" not in shown.stderr
+    result = subprocess.run(command, capture_output=True, text=True, timeout=120, check=True)
+    assert "CONSOLE" not in result.stderr
     with Image.open(picture) as image:
         pixels = np.asarray(image.convert("RGB"))
     assert pixels.reshape(-1, 3).std() > 10.0, "it is not blank"

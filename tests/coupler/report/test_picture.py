@@ -1,4 +1,4 @@
-"""Pictures show what the files hold, and cost nothing to a run that wants none."""
+"""Pictures show the content of the files, and cost nothing to a run without pictures."""
 
 import re
 import subprocess
@@ -49,36 +49,38 @@ def _walls(path, low, high, faces):
 
 
 def test_displacements_are_drawn_as_many_times_as_large_as_asked_for(figure, tmp_path):
-    moved = np.full((8, 3), 1e-3)
+    displacement = np.full((8, 3), 1e-3)
     file = VtkHdf(tmp_path / "plate.vtkhdf", {"displacement": "m"})
-    file.append(0.0, {"points": CORNERS + moved, "cells": FACES, "displacement": moved})
+    file.append(
+        0.0, {"points": CORNERS + displacement, "cells": FACES, "displacement": displacement}
+    )
     file.close()
-    drawn = figure([0.0], displacement_scale=100.0)
-    assert "displacements drawn 100 times as large" in drawn.get_suptitle()
-    shown = read(tmp_path / "plate.vtkhdf", 0.0, {}, 100.0)
-    corners = np.concatenate(shown.faces)
+    picture = figure([0.0], displacement_scale=100.0)
+    assert "displacements drawn 100 times as large" in picture.get_suptitle()
+    view = read(tmp_path / "plate.vtkhdf", 0.0, {}, 100.0)
+    corners = np.concatenate(view.faces)
     assert corners.min(axis=0) == pytest.approx(CORNERS.min(axis=0) + 0.1)
 
 
 @pytest.fixture
 def figure(monkeypatch, tmp_path):
-    """Draw, and return the figure as matplotlib holds it."""
-    kept = []
+    """Draw, and return matplotlib's figure."""
+    figures = []
 
     def draw(times, title="", **options):
-        monkeypatch.setattr(drawing, "save", lambda figure, out: kept.append(figure) or out)
+        monkeypatch.setattr(drawing, "save", lambda figure, out: figures.append(figure) or out)
         draw_run(tmp_path, tmp_path / "a.png", Picture(times, **options), title)
-        return kept[-1]
+        return figures[-1]
 
     return draw
 
 
 def _panels(figure):
-    return [one for one in figure.axes if one.get_xlabel()]
+    return [axes for axes in figure.axes if axes.get_xlabel()]
 
 
 def _bars(figure):
-    return [one.get_ylabel() for one in figure.axes if not one.get_xlabel()]
+    return [axes.get_ylabel() for axes in figure.axes if not axes.get_xlabel()]
 
 
 def _image(path):
@@ -95,17 +97,21 @@ def test_a_run_without_pictures_imports_no_drawing():
 
 def test_every_panel_tells_its_time_and_its_axes_with_units(tmp_path, figure):
     _cloud(tmp_path / "water.vtkhdf")
-    drawn = figure([0.0, 0.1], title="a scene")
-    panels = _panels(drawn)
-    assert drawn.get_suptitle().startswith("a scene")
-    assert [one.get_title() for one in panels] == ["t = 0 s", "t = 0.1 s"]
-    assert {(one.get_xlabel(), one.get_ylabel()) for one in panels} == {("x [m]", "z [m]")}
+    picture = figure([0.0, 0.1], title="a scene")
+    panels = _panels(picture)
+    assert picture.get_suptitle().startswith("a scene")
+    assert [panel.get_title() for panel in panels] == ["t = 0 s", "t = 0.1 s"]
+    assert {(panel.get_xlabel(), panel.get_ylabel()) for panel in panels} == {("x [m]", "z [m]")}
 
 
 def test_no_panel_is_later_than_the_end_of_the_run(tmp_path, figure):
     _cloud(tmp_path / "water.vtkhdf")
-    drawn = figure([0.0, 0.11, 0.3, 5.0])
-    assert [one.get_title() for one in _panels(drawn)] == ["t = 0 s", "t = 0.1 s", "t = 0.2 s"]
+    picture = figure([0.0, 0.11, 0.3, 5.0])
+    assert [panel.get_title() for panel in _panels(picture)] == [
+        "t = 0 s",
+        "t = 0.1 s",
+        "t = 0.2 s",
+    ]
 
 
 def test_a_scene_chooses_what_colours_stand_for(tmp_path, figure):
@@ -125,9 +131,9 @@ def test_faces_take_the_colour_of_their_field_only_if_the_scene_asks(tmp_path):
     _box(tmp_path / "plate.vtkhdf", stress=np.arange(6.0))
     (path,) = view_files(tmp_path)
     assert read(path, 0.0, {}).face_values is None
-    asked = read(path, 0.0, {"plate": "stress"})
-    assert asked.quantity == Quantity("stress", "Pa")
-    assert asked.face_values.tolist() == [0.0, 1.0, 2.0, 3.0, 4.0, 5.0]
+    view = read(path, 0.0, {"plate": "stress"})
+    assert view.quantity == Quantity("stress", "Pa")
+    assert view.face_values.tolist() == [0.0, 1.0, 2.0, 3.0, 4.0, 5.0]
 
 
 def test_faces_have_the_mean_of_their_corners(tmp_path):
@@ -138,14 +144,16 @@ def test_faces_have_the_mean_of_their_corners(tmp_path):
 
 def test_what_is_in_front_of_the_region_is_cut_away(tmp_path, figure):
     _cloud(tmp_path / "water.vtkhdf", 500)
-    drawn = figure([0.1], region=((0.2, 0.5, 0.0), (0.8, 1.0, 0.5)))
-    (panel,) = _panels(drawn)
+    picture = figure([0.1], region=((0.2, 0.5, 0.0), (0.8, 1.0, 0.5)))
+    (panel,) = _panels(picture)
     assert panel.get_xlim() == (0.2, 0.8) and panel.get_ylim() == (0.0, 0.5)
-    (points,) = [one for one in panel.collections if hasattr(one, "get_widths")]
+    (points,) = [
+        collection for collection in panel.collections if hasattr(collection, "get_widths")
+    ]
     drawn_points = len(points.get_offsets())
-    with_all = read(view_files(tmp_path)[0], 0.1, {}).points
-    assert drawn_points == np.count_nonzero(with_all[:, 1] >= 0.5)
-    assert "particles from y = 0.5 to 1 m" in drawn.get_suptitle()
+    all_points = read(view_files(tmp_path)[0], 0.1, {}).points
+    assert drawn_points == np.count_nonzero(all_points[:, 1] >= 0.5)
+    assert "particles from y = 0.5 to 1 m" in picture.get_suptitle()
 
 
 def test_a_solid_of_elements_is_cut_open_where_it_shows_a_field(tmp_path):
@@ -155,22 +163,26 @@ def test_a_solid_of_elements_is_cut_open_where_it_shows_a_field(tmp_path):
     file.append(0.0, {"points": np.concatenate(slices), "cells": cells, "stress": np.arange(18.0)})
     file.close()
     (path,) = view_files(tmp_path)
-    between = 0.75, 9.0
-    cut = cut_and_sorted(read(path, 0.0, {"block": "stress"}), between)
+    depths = 0.75, 9.0
+    cut = cut_and_sorted(read(path, 0.0, {"block": "stress"}), depths)
     assert min(face[:, 1].mean() for face in cut.faces) >= 0.75
     assert 0 < len(cut.faces) == len(cut.face_values) < 18
-    assert len(cut_and_sorted(read(path, 0.0, {}), between).faces) == 18  # a plain body is whole
+    assert len(cut_and_sorted(read(path, 0.0, {}), depths).faces) == 18  # a plain body is whole
 
 
 def test_walls_are_drawn_and_do_not_shrink_what_moves(tmp_path, figure):
     _cloud(tmp_path / "water.vtkhdf")
     _walls(tmp_path / "water.walls.vtkhdf", (-9.0, 0.0, 0.0), (90.0, 1.0, 1.0), ("x-", "z-", "y+"))
-    drawn = figure([0.1])
-    (panel,) = _panels(drawn)
-    lines = [len(one.get_segments()) for one in panel.collections if hasattr(one, "get_segments")]
+    picture = figure([0.1])
+    (panel,) = _panels(picture)
+    lines = [
+        len(collection.get_segments())
+        for collection in panel.collections
+        if hasattr(collection, "get_segments")
+    ]
     assert lines == [2]  # the wall behind is seen from its face
     assert np.ptp(panel.get_xlim()) < 1.5
-    assert "walls" in [text.get_text() for text in drawn.legends[0].get_texts()]
+    assert "walls" in [text.get_text() for text in picture.legends[0].get_texts()]
 
 
 def test_clamped_faces_have_strokes_behind_them_and_planes_of_symmetry_are_dashed(tmp_path, figure):
@@ -179,14 +191,14 @@ def test_clamped_faces_have_strokes_behind_them_and_planes_of_symmetry_are_dashe
     file = VtkHdf(tmp_path / "plate.walls.vtkhdf")
     file.append(0.0, {**polygons([end, axis]), "support": np.array([CLAMPED, SYMMETRY], float)})
     file.close()
-    drawn = figure([0.0])
-    (panel,) = _panels(drawn)
-    lines = [one for one in panel.collections if hasattr(one, "get_segments")]
+    picture = figure([0.0])
+    (panel,) = _panels(picture)
+    lines = [collection for collection in panel.collections if hasattr(collection, "get_segments")]
     strokes = np.concatenate(lines[-1].get_segments())
     outwards = 1.0 if end[:, 0].max() > 1.55 else -1.0
     assert ((strokes[:, 0] - end[0, 0]) * outwards >= -1e-12).all()
-    told = [text.get_text() for text in drawn.legends[0].get_texts()]
-    assert {"clamped", "plane of symmetry"} <= set(told) and "walls" not in told
+    labels = [text.get_text() for text in picture.legends[0].get_texts()]
+    assert {"clamped", "plane of symmetry"} <= set(labels) and "walls" not in labels
 
 
 def test_a_long_tank_is_no_strip(tmp_path, figure):
@@ -196,11 +208,11 @@ def test_a_long_tank_is_no_strip(tmp_path, figure):
         points = random.random((400, 3)) * [8.0, 0.7, 0.8]
         file.append(0.1 * k, {"points": points, "velocity": points})
     file.close()
-    drawn = figure([0.1 * k for k in range(6)])
-    drawn.draw_without_rendering()
-    height = _panels(drawn)[0].get_window_extent().height / drawn.dpi
-    assert height > 1.6 and drawn.get_figwidth() < 13.0 and drawn.get_figheight() < 20.0
-    assert re.search(r"z drawn [0-9.]+ times as long as x", drawn.get_suptitle())
+    picture = figure([0.1 * k for k in range(6)])
+    picture.draw_without_rendering()
+    height = _panels(picture)[0].get_window_extent().height / picture.dpi
+    assert height > 1.6 and picture.get_figwidth() < 13.0 and picture.get_figheight() < 20.0
+    assert re.search(r"z drawn [0-9.]+ times as long as x", picture.get_suptitle())
 
 
 def test_spheres_have_their_size(tmp_path, figure):
@@ -210,7 +222,7 @@ def test_spheres_have_their_size(tmp_path, figure):
     file.append(0.0, view)
     file.close()
     (panel,) = _panels(figure([0.0]))
-    (balls,) = [one for one in panel.collections if hasattr(one, "get_widths")]
+    (balls,) = [collection for collection in panel.collections if hasattr(collection, "get_widths")]
     assert np.allclose(np.sort(balls.get_widths()), [0.2, 0.5])
     assert panel.get_xlim()[0] < -0.1 and panel.get_xlim()[1] > 1.25
 
@@ -234,11 +246,11 @@ def test_snapshots_show_particles_and_bodies_in_each_panel(tmp_path):
 
 def test_a_picture_of_a_time_beyond_the_end_shows_the_last_state(tmp_path, monkeypatch, capsys):
     path = write_scene(tmp_path, end=0.01, ping="seen = true")
-    drawn = []
+    drawings = []
     monkeypatch.setattr(
-        results, "draw_run", lambda run, _, picture, *__: drawn.append((run, picture.times))
+        results, "draw_run", lambda run, _, picture, *__: drawings.append((run, picture.times))
     )
-    with pytest.raises(SystemExit) as ended:
+    with pytest.raises(SystemExit) as exit_info:
         main(
             [
                 "run",
@@ -249,20 +261,20 @@ def test_a_picture_of_a_time_beyond_the_end_shows_the_last_state(tmp_path, monke
                 f"{tmp_path}/out",
             ]
         )
-    assert ended.value.code == 0
-    ((run, times),) = drawn
+    assert exit_info.value.code == 0
+    ((run, times),) = drawings
     assert moments(view_files(run), times) == [0.0, 0.01], "the start, and the last state once"
-    told = [line for line in capsys.readouterr().err.splitlines() if "pictures" in line]
-    assert len(told) == 1, "it is told in one line"
-    assert "t = 2.8, 3 s lie beyond the run's end: its last state, at 0.01 s," in told[0]
+    messages = [line for line in capsys.readouterr().err.splitlines() if "pictures" in line]
+    assert len(messages) == 1, "it is told in one line"
+    assert "t = 2.8, 3 s lie beyond the run's end: its last state, at 0.01 s," in messages[0]
 
 
-@pytest.mark.parametrize("only", ["cloud", "box", "point"])
-def test_snapshots_need_neither_particles_nor_bodies(tmp_path, only):
-    if only == "box":
+@pytest.mark.parametrize("content", ["cloud", "box", "point"])
+def test_snapshots_need_neither_particles_nor_bodies(tmp_path, content):
+    if content == "box":
         _box(tmp_path / "a.vtkhdf")
     else:
-        _cloud(tmp_path / "a.vtkhdf", 40 if only == "cloud" else 1, speed=0.0)
+        _cloud(tmp_path / "a.vtkhdf", 40 if content == "cloud" else 1, speed=0.0)
     assert draw_run(tmp_path, tmp_path / "a.png", Picture([0.1])).stat().st_size > 1000
 
 

@@ -1,4 +1,4 @@
-"""Pictures hold what they say: texts within the figure, units that fit, profiles, walls."""
+"""Content of pictures: texts within the figure, fitting units, profiles, walls."""
 
 import numpy as np
 import pytest
@@ -17,14 +17,16 @@ from quintet.interfaces.ports import MOTION
 
 @pytest.fixture
 def figures(monkeypatch):
-    """Figures that were drawn, as matplotlib holds them."""
-    kept = []
+    """The drawn figures of matplotlib."""
+    drawn_figures = []
     for module in (comparing, drawing):
         save = module.save
         monkeypatch.setattr(
-            module, "save", lambda figure, out, save=save: kept.append(figure) or save(figure, out)
+            module,
+            "save",
+            lambda figure, out, save=save: drawn_figures.append(figure) or save(figure, out),
         )
-    return kept
+    return drawn_figures
 
 
 def _texts_within(figure):
@@ -53,7 +55,7 @@ def _record(folder, step):
 def test_titles_of_a_comparison_stay_within_the_figure(tmp_path, figures, name):
     _record(tmp_path, 0.02)
     common = {"component": "cubes", "field": "motion.position", "unit": "m", "source": "s"}
-    every = [
+    expectations = [
         Expectation(
             name=f"{name} {axis}", measure="at", begin=0.2, value=0.123456, within=1.234e-5,
             axis=axis, **common,
@@ -61,21 +63,23 @@ def test_titles_of_a_comparison_stay_within_the_figure(tmp_path, figures, name):
         for axis in (0, 1, 2)
     ]  # fmt: skip
     with Recording(tmp_path) as recording:
-        outcomes = [evaluate(one, recording, tmp_path) for one in every]
+        outcomes = [evaluate(expectation, recording, tmp_path) for expectation in expectations]
         out = tmp_path / "c.png"
-        comparing.comparison(tmp_path, every, outcomes, recording, out, values=True)
+        comparing.comparison(tmp_path, expectations, outcomes, recording, out, values=True)
     _texts_within(figures[0])
 
 
 def test_times_of_microseconds_are_written_as_such(tmp_path, figures):
     _record(tmp_path, 1e-7)
-    one = Expectation(
+    expectation = Expectation(
         name="x", component="cubes", field="motion.position", axis=0, unit="m", source="s",
         measure="at", begin=1e-6, value=0.2, within=0.1,
     )  # fmt: skip
     with Recording(tmp_path) as recording:
-        outcomes = [evaluate(one, recording, tmp_path)]
-        comparing.comparison(tmp_path, [one], outcomes, recording, tmp_path / "c.png", values=True)
+        outcomes = [evaluate(expectation, recording, tmp_path)]
+        comparing.comparison(
+            tmp_path, [expectation], outcomes, recording, tmp_path / "c.png", values=True
+        )
     (panel,) = figures[0].axes
     assert panel.get_xlabel() == "t [µs]"
     panel.set_xticks([0.0, 1e-6])

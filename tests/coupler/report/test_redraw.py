@@ -1,4 +1,4 @@
-"""A run is drawn again from what it left: times, fields, ranges, views and sections."""
+"""A run is drawn again from its files: times, fields, ranges, views and sections."""
 
 import numpy as np
 import pytest
@@ -31,8 +31,8 @@ def folder(tmp_path):
 
 
 @pytest.fixture
-def drawn(monkeypatch):
-    """Figures that were drawn, as matplotlib holds them."""
+def drawn_figures(monkeypatch):
+    """The drawn figures of matplotlib."""
     figures = []
     save = drawing.save
     monkeypatch.setattr(
@@ -42,9 +42,9 @@ def drawn(monkeypatch):
 
 
 def _command(*arguments):
-    with pytest.raises(SystemExit) as ended:
+    with pytest.raises(SystemExit) as exit_info:
         main(["draw", *map(str, arguments)])
-    return ended.value.code
+    return exit_info.value.code
 
 
 def _panels(figure):
@@ -55,22 +55,22 @@ def _circles(panel):
     return [part for part in panel.collections if hasattr(part, "get_widths")]
 
 
-def test_a_ball_under_water_is_seen(folder, drawn):
+def test_a_ball_under_water_is_seen(folder, drawn_figures):
     draw_run(folder, folder / "a.png", Picture([0.1]))
-    (panel,) = _panels(drawn[0])
+    (panel,) = _panels(drawn_figures[0])
     ball, water = sorted(_circles(panel), key=lambda part: len(part.get_offsets()))
     order = panel.collections.index
     assert order(ball) > order(water), "bodies are drawn after particles"
     assert len(water.get_offsets()) == np.count_nonzero(POINTS[:, 1] >= 0.25)
-    assert "particles in front of y = 0.25 m left out" in drawn[0].get_suptitle()
+    assert "particles in front of y = 0.25 m left out" in drawn_figures[0].get_suptitle()
 
 
-def test_nothing_is_left_out_where_particles_hide_no_body(folder, drawn):
+def test_nothing_is_left_out_where_particles_hide_no_body(folder, drawn_figures):
     (folder / "ball.vtkhdf").unlink()
     draw_run(folder, folder / "a.png", Picture([0.1]))
-    (panel,) = _panels(drawn[0])
+    (panel,) = _panels(drawn_figures[0])
     assert len(_circles(panel)[0].get_offsets()) == len(POINTS)
-    assert "left out" not in drawn[0].get_suptitle()
+    assert "left out" not in drawn_figures[0].get_suptitle()
 
 
 def test_a_box_hides_nothing_of_particles_in_one_plane(tmp_path):
@@ -108,21 +108,21 @@ def test_views_are_not_mirrored(view, names, right, into):
     assert np.linalg.det(turn) == pytest.approx(1.0), "a turn, no mirror"
 
 
-def test_a_section_is_a_coordinate_of_the_scene(folder, drawn):
+def test_a_section_is_a_coordinate_of_the_scene(folder, drawn_figures):
     assert _command(folder, "--view", "front", "--section", "0.75", "--times", "0.1") == 0
-    (panel,) = _panels(drawn[0])
+    (panel,) = _panels(drawn_figures[0])
     water = max(_circles(panel), key=lambda part: len(part.get_offsets()))
     assert len(water.get_offsets()) == np.count_nonzero(POINTS[:, 0] <= 0.75), (
         "one looks against x: what is in front has a larger x"
     )
-    assert "front view against x, cut open at x = 0.75 m" in drawn[0].get_suptitle()
+    assert "front view against x, cut open at x = 0.75 m" in drawn_figures[0].get_suptitle()
 
 
-def test_the_command_chooses_times_colours_and_their_range(folder, drawn):
+def test_the_command_chooses_times_colours_and_their_range(folder, drawn_figures):
     arguments = ("--times", "0,0.2", "--colour", "water.pressure", "--range", "water=100,300")
     assert _command(folder, *arguments) == 0
     assert (folder / "drawn.png").stat().st_size > 1000
-    (figure,) = drawn
+    (figure,) = drawn_figures
     assert [panel.get_title() for panel in _panels(figure)] == ["t = 0 s", "t = 0.2 s"]
     bars = {bar.get_ylabel(): bar.get_ylim() for bar in figure.axes if not bar.get_xlabel()}
     ((label, ends),) = [item for item in bars.items() if "pressure" in item[0]]
@@ -130,25 +130,25 @@ def test_the_command_chooses_times_colours_and_their_range(folder, drawn):
     assert label.startswith("pressure [Pa]") and "beyond" in label
 
 
-def test_a_region_may_be_given_by_any_two_opposite_corners(folder, drawn):
+def test_a_region_may_be_given_by_any_two_opposite_corners(folder, drawn_figures):
     assert _command(folder, "--region", "0.8", "0.5", "0.3", "0.2", "0.1", "0.0") == 0
-    (panel,) = _panels(drawn[0])
+    (panel,) = _panels(drawn_figures[0])
     assert panel.get_xlim() == (0.2, 0.8) and panel.get_ylim() == (0.0, 0.3)
     assert panel.get_title() == "t = 0.2 s", "the last state, where the scene names no time"
 
 
 def test_another_file_is_not_replaced_without_force(folder, capsys):
-    mine = folder / "mine.png"
-    mine.write_text("mine")
-    assert _command(folder, "--out", mine) == 2
+    picture = folder / "mine.png"
+    picture.write_text("mine")
+    assert _command(folder, "--out", picture) == 2
     assert "it exists. Name another file, or use --force." in capsys.readouterr().err
-    assert mine.read_text() == "mine"
-    assert _command(folder, "--out", mine, "--force") == 0
-    assert mine.stat().st_size > 1000
+    assert picture.read_text() == "mine"
+    assert _command(folder, "--out", picture, "--force") == 0
+    assert picture.stat().st_size > 1000
 
 
 @pytest.mark.parametrize(
-    "arguments, told",
+    "arguments, message",
     [
         (["--colour", "water.presure"], "field presure is not known. Did you mean pressure?"),
         (["--colour", "sea.pressure"], "component sea is not known. Known here: ball, water."),
@@ -156,9 +156,9 @@ def test_another_file_is_not_replaced_without_force(folder, capsys):
         (["--out", "a.txt"], "it must end with one of .png, .svg, .pdf, .jpg; found .txt"),
     ],
 )
-def test_mistakes_are_told(folder, arguments, told, capsys):
+def test_mistakes_are_told(folder, arguments, message, capsys):
     assert _command(folder, *arguments) == 2
-    assert told in capsys.readouterr().err
+    assert message in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("text", ["water=2,1", "water=1", "water", "water=a,b"])

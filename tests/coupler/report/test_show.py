@@ -1,4 +1,4 @@
-"""What a run left is told in full, in text that a pipe can carry."""
+"""The results of a run are printed in full, as text that a pipe can carry."""
 
 import copy
 import json
@@ -46,8 +46,8 @@ RESULTS = {
 }  # fmt: skip
 
 
-def _shown(folder, found, capsys, **settings):
-    (folder / "results.json").write_text(json.dumps(found))
+def _text_of(folder, results, capsys, **settings):
+    (folder / "results.json").write_text(json.dumps(results))
     show(folder, **settings)
     return capsys.readouterr().out
 
@@ -57,7 +57,7 @@ def _line(text, word):
 
 
 def test_show_tells_expectations_ledger_and_timing(tmp_path, capsys):
-    text = _shown(tmp_path, RESULTS, capsys)
+    text = _text_of(tmp_path, RESULTS, capsys)
     assert "dam_break (quick): done, 1234 windows to t = 1.8 s over zenoh" in text
     assert _line(text, "top.x") == ["met", "top.x", "[rms]", "m", "0.0437", "0", "0.05"]
     assert _line(text, "late") == ["not", "met", "late", "s", "-", "1.5", "0.1"]
@@ -73,7 +73,7 @@ def test_show_leaves_out_what_no_link_carries_and_stays_narrow(tmp_path, capsys)
              "energy_residual": 0.0, "impulse": [0.0, 0.0, 0.0]}  # fmt: skip
     heat = {"link": "points-bar", **zeros, "heat_residual": 0.0, "heat": -1.5}
     force = {"link": "water-cubes", **zeros, "impulse": [-1.234e-5, 2.345e-6, -3.456e-7]}
-    text = _shown(tmp_path, RESULTS | {"ledger": {"links": [heat, force]}}, capsys)
+    text = _text_of(tmp_path, RESULTS | {"ledger": {"links": [heat, force]}}, capsys)
     assert "work" not in text and "energy residual" not in text
     assert _line(text, "momentum residual")[2:] == ["-", "0"], "exactly 0, and carried by one"
     assert _line(text, "heat residual")[2:] == ["0", "-"]
@@ -81,7 +81,7 @@ def test_show_leaves_out_what_no_link_carries_and_stays_narrow(tmp_path, capsys)
 
 
 def test_show_tells_where_the_energy_of_the_run_and_of_each_component_went(tmp_path, capsys):
-    text = _shown(tmp_path, RESULTS, capsys)
+    text = _text_of(tmp_path, RESULTS, capsys)
     assert "Energy [J], 100 % = 1000 J" in text
     assert _line(text, "lost (diss")[2:] == ["12", "(1.2", "%)", "12", "(1.2", "%)", "0"]
     assert _line(text, "work over")[3:] == ["0", "-5", "(-0.5", "%)", "5", "(0.5", "%)"]
@@ -91,18 +91,20 @@ def test_show_tells_where_the_energy_of_the_run_and_of_each_component_went(tmp_p
 
 
 def test_show_tells_of_one_component_without_repeating_it_for_the_run(tmp_path, capsys):
-    whole = RESULTS["ledger"]["energy_balance"]
-    water = {**whole["components"]["water"], "change": -12.0}
-    one = {**whole, "run": water, "components": {"water": water}}
-    text = _shown(tmp_path, RESULTS | {"ledger": {"links": [], "energy_balance": one}}, capsys)
+    full_balance = RESULTS["ledger"]["energy_balance"]
+    water = {**full_balance["components"]["water"], "change": -12.0}
+    balance = {**full_balance, "run": water, "components": {"water": water}}
+    text = _text_of(
+        tmp_path, RESULTS | {"ledger": {"links": [], "energy_balance": balance}}, capsys
+    )
     assert _line(text, "change") == ["change", "-12", "(-1.2", "%)"]
 
 
 def test_show_tells_of_masses_that_changed(tmp_path, capsys):
-    text = _shown(tmp_path, RESULTS, capsys)
+    text = _text_of(tmp_path, RESULTS, capsys)
     assert "Mass: mass of water changed by -1 % (-2 kg)\n" in text, "and only of water"
     filled = {"basin": {"kg": 2.5, "relative": None}}
-    text = _shown(tmp_path, RESULTS | {"ledger": {"links": [], "mass_drift": filled}}, capsys)
+    text = _text_of(tmp_path, RESULTS | {"ledger": {"links": [], "mass_drift": filled}}, capsys)
     assert "Mass: mass of basin changed by +2.5 kg from none" in text
     assert "Energy" not in text
 
@@ -112,7 +114,7 @@ def test_show_tells_where_mass_came_from_and_went(tmp_path, capsys):
     balance = {"water": {"kg": masses, "now": 11.0, "residual": 0.0}}
     still = {"basin": {"kg": {"at the start": 3.0}, "now": 3.0, "residual": 0.0}}
     ledger = {"links": [], "mass_balance": balance | still}
-    text = _shown(tmp_path, RESULTS | {"ledger": ledger}, capsys)
+    text = _text_of(tmp_path, RESULTS | {"ledger": ledger}, capsys)
     assert (
         "Mass of water: +10 kg at the start, +2 kg entered by the inflow x-, -1 kg lost through "
         "the wall z-; 11 kg now, which differs from their sum by 0 of it\n"
@@ -121,49 +123,49 @@ def test_show_tells_where_mass_came_from_and_went(tmp_path, capsys):
 
 
 def test_show_tells_nothing_of_energy_and_mass_where_no_component_has_them(tmp_path, capsys):
-    bare = {"links": [], "energy_balance": None, "mass_drift": {}}
-    text = _shown(tmp_path, RESULTS | {"ledger": bare}, capsys)
+    ledger = {"links": [], "energy_balance": None, "mass_drift": {}}
+    text = _text_of(tmp_path, RESULTS | {"ledger": ledger}, capsys)
     assert not any(word in text for word in ("Energy", "energy", "Mass", "mass", "Balance"))
 
 
 def test_show_tells_which_time_a_run_did_not_reach(tmp_path, capsys):
-    beyond = RESULTS["expect"][1] | {"not_reached": 0.2}
-    said = _shown(tmp_path, RESULTS | {"expect": [beyond]}, capsys)
-    assert "not reached (t = 0.2 s)  late" in said, "it is told what the run lacks"
-    assert "not met" not in said, "what was not measured is not told as missed"
-    beyond |= {"required": False}
-    assert "(t = 0.2 s), not required" in _shown(tmp_path, RESULTS | {"expect": [beyond]}, capsys)
+    row = RESULTS["expect"][1] | {"not_reached": 0.2}
+    text = _text_of(tmp_path, RESULTS | {"expect": [row]}, capsys)
+    assert "not reached (t = 0.2 s)  late" in text, "it is told what the run lacks"
+    assert "not met" not in text, "what was not measured is not told as missed"
+    row |= {"required": False}
+    assert "(t = 0.2 s), not required" in _text_of(tmp_path, RESULTS | {"expect": [row]}, capsys)
 
 
 def test_show_tells_of_warnings(tmp_path, capsys):
     warning = {"source": "link water-cube", "text": "its coupling is unstable"}
     text = "Warning of link water-cube: its coupling is unstable"
-    assert text in _shown(tmp_path, RESULTS | {"warnings": [warning]}, capsys)
-    assert "Warning" not in _shown(tmp_path, RESULTS | {"warnings": []}, capsys)
+    assert text in _text_of(tmp_path, RESULTS | {"warnings": [warning]}, capsys)
+    assert "Warning" not in _text_of(tmp_path, RESULTS | {"warnings": []}, capsys)
 
 
 def test_show_is_plain_when_piped(tmp_path, capsys):
-    assert _shown(tmp_path, RESULTS, capsys).isascii()
+    assert _text_of(tmp_path, RESULTS, capsys).isascii()
 
 
 def test_show_tells_what_broke(tmp_path, capsys):
-    found = copy.deepcopy(RESULTS) | {"status": "failed", "expect": []}
-    found["fault"] = {
+    results = copy.deepcopy(RESULTS) | {"status": "failed", "expect": []}
+    results["fault"] = {
         "component": "water", "window": 17, "cause": "killed by signal 9",
         "log": ["step 41", "density [-1] is wrong"],
     }  # fmt: skip
-    text = _shown(tmp_path, found, capsys)
+    text = _text_of(tmp_path, results, capsys)
     assert "failed" in text and "component: water" in text and "window: 17" in text
     assert "killed by signal 9" in text and "    density [-1] is wrong" in text
 
 
 def test_show_tells_what_little_an_interrupted_run_left(tmp_path, capsys):
-    text = _shown(tmp_path, {"scene": "s", "status": "interrupted", "windows": 3}, capsys)
+    text = _text_of(tmp_path, {"scene": "s", "status": "interrupted", "windows": 3}, capsys)
     assert "s: interrupted, 3 windows" in text
 
 
 def test_show_as_json_gives_back_the_results(tmp_path, capsys):
-    assert json.loads(_shown(tmp_path, RESULTS, capsys, as_json=True)) == RESULTS
+    assert json.loads(_text_of(tmp_path, RESULTS, capsys, as_json=True)) == RESULTS
 
 
 def test_a_folder_without_results_is_refused(tmp_path):
@@ -176,20 +178,20 @@ def test_a_folder_without_results_is_refused(tmp_path):
 
 
 def test_an_expectation_without_a_value_says_why(tmp_path, capsys):
-    one = RESULTS["expect"][0] | {"value": None, "met": False, "reason": "never passed"}
-    said = _shown(tmp_path, RESULTS | {"expect": [one]}, capsys)
-    assert f"{one['name']}: not met: never passed" in " ".join(said.split())
+    row = RESULTS["expect"][0] | {"value": None, "met": False, "reason": "never passed"}
+    text = _text_of(tmp_path, RESULTS | {"expect": [row]}, capsys)
+    assert f"{row['name']}: not met: never passed" in " ".join(text.split())
 
 
 def test_show_puts_error_bars_beside_the_values_where_a_run_has_them(tmp_path, capsys):
-    assert "±" not in _shown(tmp_path, RESULTS, capsys)
-    found = copy.deepcopy(RESULTS)
-    found["expect"][0]["error_bar"] = 0.002
+    assert "±" not in _text_of(tmp_path, RESULTS, capsys)
+    results = copy.deepcopy(RESULTS)
+    results["expect"][0]["error_bar"] = 0.002
     row = {"name": "top.x [rms]", "window": 3e-6, "value": 0.002, "order": 1}
-    found["error_bar"] = {
+    results["error_bar"] = {
         "confidence": 0.9, "windows": [1, 125], "skipped": "dust keeps no state.", "watched": [row]
     }  # fmt: skip
-    text = _shown(tmp_path, found, capsys)
+    text = _text_of(tmp_path, results, capsys)
     assert _line(text, "met ")[-4:] == ["0.0437", "0.002", "0", "0.05"]
     assert _line(text, "late")[-4:] == ["-", "-", "1.5", "0.1"]
     assert "Error by the coupling, with 90 % confidence" in text

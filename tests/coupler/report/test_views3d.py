@@ -39,10 +39,10 @@ def folder(tmp_path):
     return tmp_path
 
 
-def ended_with(*arguments):
-    with pytest.raises(SystemExit) as ended:
+def exit_status(*arguments):
+    with pytest.raises(SystemExit) as exit_info:
         main(["draw", *map(str, arguments)])
-    return ended.value.code
+    return exit_info.value.code
 
 
 @pytest.mark.parametrize("name", ["water", "ball", "block"])
@@ -70,13 +70,13 @@ def test_walls_are_read_by_pyvista(folder):
 
 def test_spheres_have_their_size_and_particles_that_of_their_spacing():
     points = np.stack(np.meshgrid(*[np.arange(4.0)] * 3), axis=-1).reshape(-1, 3)
-    none, zeros = None, np.zeros(len(points))
+    absent, zeros = None, np.zeros(len(points))
     values = np.arange(len(points), dtype=float)
-    cloud = Shown("water", Quantity("p", "Pa"), points, zeros, values, [], none)
+    cloud = Shown("water", Quantity("p", "Pa"), points, zeros, values, [], absent)
     ((mesh, colours),) = views3d.meshes(cloud, 0.1)
     assert mesh.bounds[::2] == pytest.approx((-0.5, -0.5, -0.5), abs=0.04)
     assert set(np.unique(colours)) == set(values)
-    ball = Shown("ball", none, points[:1], np.array([2.0]), none, [], none)
+    ball = Shown("ball", absent, points[:1], np.array([2.0]), absent, [], absent)
     ((mesh, colours),) = views3d.meshes(ball, 0.1)
     assert mesh.bounds[5] == pytest.approx(2.0) and colours is None
 
@@ -97,7 +97,7 @@ def test_the_camera_sees_all_that_moves_and_walls_that_are_near():
 
 
 def test_a_run_is_drawn_in_three_dimensions(folder):
-    assert ended_with(folder, "--3d", "--times", "0,0.2", "--colour", "water.pressure") == 0
+    assert exit_status(folder, "--3d", "--times", "0,0.2", "--colour", "water.pressure") == 0
     pixels = pyvista.read(folder / "drawn-3d.png")
     wide, tall, _ = pixels.dimensions
     assert (wide, tall) == (2 * views3d.SIZE[0], views3d.SIZE[1])
@@ -109,28 +109,28 @@ def test_a_run_is_drawn_in_three_dimensions(folder):
 def test_a_film_has_a_frame_for_each_step(folder):
     imageio = pytest.importorskip("imageio.v3")
     film = folder / "film.gif"
-    assert ended_with(folder, "--animate", film) == 0
+    assert exit_status(folder, "--animate", film) == 0
     frames = imageio.imread(film, index=None)
     assert len(frames) == STEPS
     assert (frames[0] != frames[-1]).any()
 
 
 def test_wrong_wishes_are_refused(folder, capsys):
-    for wishes, said in (
+    for options, message in (
         (["--3d", "--section", "0.1"], "--section and --region are for pictures in two"),
         (["--3d", "--out", "a.svg"], "must end with one of .png, .jpg; found .svg"),
         (["--animate", "a.avi"], "must end with .gif or .mp4"),
         (["--animate", folder / "a.gif", "--times", "0.1"], "needs two steps or more; found 1"),
     ):
-        assert ended_with(folder, *wishes) == 2
-        assert said in capsys.readouterr().err
+        assert exit_status(folder, *options) == 2
+        assert message in capsys.readouterr().err
     (folder / "mine.gif").write_text("mine")
-    assert ended_with(folder, "--animate", folder / "mine.gif") == 2
+    assert exit_status(folder, "--animate", folder / "mine.gif") == 2
     assert (folder / "mine.gif").read_text() == "mine"
 
 
 @pytest.mark.parametrize(
-    ("library", "wishes"),
+    ("library", "options"),
     [
         ("pyvista", ["--3d"]),
         ("pyvista", ["--animate", "a.gif"]),
@@ -138,8 +138,8 @@ def test_wrong_wishes_are_refused(folder, capsys):
         ("imageio_ffmpeg", ["--animate", "a.mp4"]),
     ],
 )
-def test_what_lacks_is_named_with_its_extra(folder, monkeypatch, capsys, library, wishes):
+def test_what_lacks_is_named_with_its_extra(folder, monkeypatch, capsys, library, options):
     monkeypatch.setitem(sys.modules, library, None)
-    assert ended_with(folder, *wishes) == 2
-    told = capsys.readouterr().err
-    assert f"needs the library {library}" in told and "quintet[views3d]" in told
+    assert exit_status(folder, *options) == 2
+    message = capsys.readouterr().err
+    assert f"needs the library {library}" in message and "quintet[views3d]" in message

@@ -1,4 +1,4 @@
-"""What a work-precision diagram shows."""
+"""Content of a work-precision diagram."""
 
 import pytest
 from matplotlib.figure import Figure
@@ -24,7 +24,7 @@ def test_the_front_holds_what_no_other_point_beats():
 
 
 @pytest.fixture
-def drawn(monkeypatch, tmp_path):
+def draw_rows(monkeypatch, tmp_path):
     """Draw rows; return the figure before it is written."""
     figures = []
 
@@ -33,15 +33,15 @@ def drawn(monkeypatch, tmp_path):
         figures.append(figure)
         return out
 
-    def make(rows, name="study", **more):
+    def make(rows, name="study", **keys):
         names = list(rows[0]["errors"])
-        sized = [one for one in rows if one["ladders"]]
+        sized_rows = [row for row in rows if row["ladders"]]
         orders = {}
         for expected in names:
-            pairs = [(one["sizes"]["spacing"], one["errors"][expected]) for one in sized]
+            pairs = [(row["sizes"]["spacing"], row["errors"][expected]) for row in sized_rows]
             orders[expected] = as_table(observed_order(*zip(*pairs, strict=True)))
-        kinds = {"spacing": {"orders": orders}} if sized else {}
-        summary = {"scene": name, "rows": rows, "kinds": kinds, **more}
+        kinds = {"spacing": {"orders": orders}} if sized_rows else {}
+        summary = {"scene": name, "rows": rows, "kinds": kinds, **keys}
         assert draw(summary, tmp_path / "study.png")
         return figures[-1]
 
@@ -49,9 +49,9 @@ def drawn(monkeypatch, tmp_path):
     return make
 
 
-def test_it_has_a_legend_a_front_and_triangles_with_their_slope(drawn):
+def test_it_has_a_legend_a_front_and_triangles_with_their_slope(draw_rows):
     ladder = [row(f"{h} m", h**-2, {"end": h**3}, h < 0.2, size=h) for h in (0.4, 0.2, 0.1)]
-    figure = drawn([*ladder, row("other", 50.0, {"end": 0.1}, None, "model")])
+    figure = draw_rows([*ladder, row("other", 50.0, {"end": 0.1}, None, "model")])
     (legend,) = figure.legends
     words = {text.get_text() for text in legend.get_texts()}
     assert {"spacing, all met", "spacing, not all met", "model", "Pareto front"} <= words
@@ -64,13 +64,13 @@ def test_it_has_a_legend_a_front_and_triangles_with_their_slope(drawn):
     assert len(front.get_xdata()) == 3
 
 
-def test_other_programs_have_marks_of_their_own_beside_the_front(drawn):
+def test_other_programs_have_marks_of_their_own_beside_the_front(draw_rows):
     ladder = [row(f"{h} m", h**-2, {"end": h**2, "b": h}, size=h) for h in (0.4, 0.2, 0.1)]
     runs = [row(f"{n} cells", 0.1 * n, {"end": 1.0 / n}, n > 10) for n in (10, 20, 40)]
     for run, series in zip(runs, ("", "", "fine"), strict=True):
         run["series"] = series
     peers = [{"program": "Toy", "version": "7.1", "cost": "wall", "rows": runs}]
-    figure = drawn(ladder, peers=peers)
+    figure = draw_rows(ladder, peers=peers)
     first, second = figure.axes
     points = [line for line in first.lines if line.get_marker() in ("s", "D")]
     places = [(line.get_xdata()[0], line.get_ydata()[0]) for line in points]
@@ -84,15 +84,15 @@ def test_other_programs_have_marks_of_their_own_beside_the_front(drawn):
     assert not [line for line in second.lines if line.get_marker() == "s"]
 
 
-def test_no_title_runs_off(drawn):
-    long = "pressure on the wall behind the column, half way up, " * 4
-    rows = [row(f"{h} m", h**-2, {long: h**3, "b": h}, size=h) for h in (0.4, 0.2, 0.1)]
-    figure = drawn(rows, "a_scene_with_a_name_that_is_as_long_as_it_can_be_" * 4)
+def test_no_title_runs_off(draw_rows):
+    quantity = "pressure on the wall behind the column, half way up, " * 4
+    rows = [row(f"{h} m", h**-2, {quantity: h**3, "b": h}, size=h) for h in (0.4, 0.2, 0.1)]
+    figure = draw_rows(rows, "a_scene_with_a_name_that_is_as_long_as_it_can_be_" * 4)
     assert isinstance(figure, Figure)
-    renderer, whole = figure.canvas.get_renderer(), figure.bbox
+    renderer, figure_box = figure.canvas.get_renderer(), figure.bbox
     for text in (figure._suptitle, *(panel.title for panel in figure.axes)):
         box = text.get_window_extent(renderer)
-        assert box.x0 >= whole.x0 and box.x1 <= whole.x1 and box.y1 <= whole.y1, text
+        assert box.x0 >= figure_box.x0 and box.x1 <= figure_box.x1 and box.y1 <= figure_box.y1, text
     left, right = (panel.title.get_window_extent(renderer) for panel in figure.axes)
     assert left.x1 < right.x0
 
