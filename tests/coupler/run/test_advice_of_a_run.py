@@ -1,4 +1,4 @@
-"""A run leaves who waited for whom, as it was measured."""
+"""A run reports the measured times that components waited for each other."""
 
 import pytest
 from started import write_scene

@@ -1,4 +1,4 @@
-"""Energy and mass that a run loses are told at its end, whatever else the scene asks for."""
+"""At its end a run reports the energy and mass that it lost, whatever else the scene asks for."""
 
 import json
 import re
@@ -42,7 +42,7 @@ def test_a_run_tells_the_energy_and_mass_that_it_lost(tmp_path, capfd, end):
         assert part["gained"] == 0.0
         assert part["unexplained"] is None, "it does not report what it dissipates"
     assert ledger["mass_drift"]["spring"] == pytest.approx({"kg": -end, "relative": -0.02 * end})
-    printed = capfd.readouterr().out
-    assert f"100 % = {12 * end:g} J" in printed
-    assert re.search(rf"lost \(dissipated\) +{12 * end:g} \(100 %\)\n", printed)
-    assert f"mass of spring changed by {-2 * end:g} % ({-end:g} kg)" in printed
+    screen = capfd.readouterr().out
+    assert f"100 % = {12 * end:g} J" in screen
+    assert re.search(rf"lost \(dissipated\) +{12 * end:g} \(100 %\)\n", screen)
+    assert f"mass of spring changed by {-2 * end:g} % ({-end:g} kg)" in screen

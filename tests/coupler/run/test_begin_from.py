@@ -1,4 +1,4 @@
-"""A run that begins from the state of another: the same bits where nothing has changed."""
+"""A run that begins from the state of another run: the same bits if the scene is unchanged."""
 
 import json
 from pathlib import Path
@@ -22,8 +22,8 @@ ZENOH = pytest.param("zenoh", marks=pytest.mark.zenoh)
 @pytest.mark.parametrize("scheme", ["serial", "parallel", "iterated"])
 def test_toys_go_on_with_the_same_bits(tmp_path, scheme, transport):
     scene = write_scene(tmp_path, ping="substeps = 7", pong="substeps = 3")
-    whole, again = two_stages(scene, tmp_path, 0.03, f'scheme="{scheme}"', transport=transport)
-    assert len(rows(again)["ping/out.number"]) == 31 and is_the_end_of(again, whole)
+    whole, continued = two_stages(scene, tmp_path, 0.03, f'scheme="{scheme}"', transport=transport)
+    assert len(rows(continued)["ping/out.number"]) == 31 and is_the_end_of(continued, whole)
 
 
 def test_two_springs_that_iterate_go_on_with_the_same_bits(tmp_path):
@@ -48,15 +48,15 @@ def test_components_that_are_not_named_start_as_they_are_described(tmp_path):
     scene = write_scene(tmp_path)
     first = run(scene, tmp_path / "first", "end=0.03", "output.states=[1.0]")
     begin = f'begin_from={{run="{first}", components=["ping"]}}'
-    before, after = rows(first), rows(run(scene, tmp_path / "again", begin, "end=0.01"))
-    assert np.array_equal(after["ping/out.number"][0], before["ping/out.number"][-1])
-    assert np.array_equal(after["pong/out.number"][0], before["pong/out.number"][0])
+    first_rows, second_rows = rows(first), rows(run(scene, tmp_path / "again", begin, "end=0.01"))
+    assert np.array_equal(second_rows["ping/out.number"][0], first_rows["ping/out.number"][-1])
+    assert np.array_equal(second_rows["pong/out.number"][0], first_rows["pong/out.number"][0])
 
 
 def test_time_begins_at_0_and_the_books_close(tmp_path):
     scene = write_scene(tmp_path)
-    _, again = two_stages(scene, tmp_path, 0.03)
-    results = json.loads((again / "results.json").read_text())
+    _, continued = two_stages(scene, tmp_path, 0.03)
+    results = json.loads((continued / "results.json").read_text())
     assert results["time"] == 0.03 and results["windows"] == 30
     link = results["ledger"]["links"][0]
     assert link["momentum_residual"] < 1e-12
@@ -66,10 +66,10 @@ def test_another_link_begins_with_components_where_they_were(tmp_path):
     scene = write_scene(tmp_path)
     first = run(scene, tmp_path / "first", "end=0.03", "output.states=[1.0]")
     settings = (f'begin_from="{first}"', "end=0.01", 'links.0.name="other"')
-    again = run(scene, tmp_path / "again", *settings)
-    before, after = rows(first), rows(again)
-    instants = [key for key in before if key.endswith("number")]
-    assert all(np.array_equal(before[key][-1], after[key][0]) for key in instants)
+    continued = run(scene, tmp_path / "again", *settings)
+    first_rows, second_rows = rows(first), rows(continued)
+    instants = [key for key in first_rows if key.endswith("number")]
+    assert all(np.array_equal(first_rows[key][-1], second_rows[key][0]) for key in instants)
 
 
 def test_a_state_is_chosen_by_its_time(tmp_path):
@@ -77,21 +77,25 @@ def test_a_state_is_chosen_by_its_time(tmp_path):
     whole = run(scene, tmp_path / "whole", "end=0.03", "output.states=[0.01, 0.02]")
     assert [path.name for path in states_of(whole)] == ["state-10.h5", "state-20.h5"]
     begin = f'begin_from={{run="{whole}", time=0.01}}'
-    again = run(scene, tmp_path / "again", begin, "end=0.02")
-    assert is_the_end_of(again, whole)
+    continued = run(scene, tmp_path / "again", begin, "end=0.02")
+    assert is_the_end_of(continued, whole)
     with pytest.raises(SceneError, match=r"time must be .* at 0\.01, 0\.02 s; found 0\.015 s"):
         load(str(scene), settings=[f'begin_from={{run="{whole}", time=0.015}}'])
 
 
 def test_results_name_the_run_begun_from(tmp_path):
     scene = write_scene(tmp_path)
-    _, again = two_stages(scene, tmp_path, 0.01)
-    told = json.loads((again / "results.json").read_text())["begin_from"]
+    _, continued = two_stages(scene, tmp_path, 0.01)
+    beginning = json.loads((continued / "results.json").read_text())["begin_from"]
     first = tmp_path / "first"
     marker = json.loads((first / "quintet-run.json").read_text())
-    assert told["run"] == str(first) and told["id"] == marker["run"] and told["scene"] == "toy"
-    assert told["hash"] == hash_of(first / told["state"]) and told["time"] == 0.01
-    assert told["components"] == ["ping", "pong"]
+    assert (
+        beginning["run"] == str(first)
+        and beginning["id"] == marker["run"]
+        and beginning["scene"] == "toy"
+    )
+    assert beginning["hash"] == hash_of(first / beginning["state"]) and beginning["time"] == 0.01
+    assert beginning["components"] == ["ping", "pong"]
 
 
 def test_a_run_is_kept_though_the_one_that_it_began_from_is_gone(tmp_path, monkeypatch):
@@ -99,20 +103,20 @@ def test_a_run_is_kept_though_the_one_that_it_began_from_is_gone(tmp_path, monke
     first = run(scene, tmp_path / "first", "end=0.01", "output.states=[1.0]")
     evaluate = simulate.results.outcomes
 
-    def then_gone(*arguments):
+    def evaluate_and_move(*arguments):
         first.rename(tmp_path / "moved")
         return evaluate(*arguments)
 
-    monkeypatch.setattr(simulate.results, "outcomes", then_gone)
-    again = run(scene, tmp_path / "again", f'begin_from="{first}"', "end=0.01")
-    assert json.loads((again / "results.json").read_text())["begin_from"]["run"] == str(first)
+    monkeypatch.setattr(simulate.results, "outcomes", evaluate_and_move)
+    continued = run(scene, tmp_path / "again", f'begin_from="{first}"', "end=0.01")
+    assert json.loads((continued / "results.json").read_text())["begin_from"]["run"] == str(first)
 
 
 def test_the_folder_that_it_begins_from_is_not_replaced(tmp_path, capsys):
     scene = write_scene(tmp_path)
     first = run(scene, tmp_path / "first", "end=0.01", "output.states=[1.0]")
-    begun = ("--set", f'begin_from="{first}"', "--out", first, "--force")
-    assert status("run", scene, *begun) == 2
+    arguments = ("--set", f'begin_from="{first}"', "--out", first, "--force")
+    assert status("run", scene, *arguments) == 2
     assert "it must be another folder than that of begin_from" in capsys.readouterr().err
     assert (first / "results.json").is_file() and states_of(first)
 
@@ -127,23 +131,30 @@ def test_a_component_that_is_no_table_is_told(tmp_path):
 def test_the_hash_of_a_run_covers_the_state_that_it_begins_from(tmp_path):
     scene = write_scene(tmp_path)
     two_stages(scene, tmp_path, 0.01)
-    begun = [f'begin_from="{tmp_path / "first"}"']
-    before = run_hash(load(str(scene), settings=begun))
-    again = ("--transport", "memory", "--out", tmp_path / "first", "--force")
-    sets = ("--set", "output.states=[1.0]", "--set", "end=0.01", "--set", 'scheme="parallel"')
-    assert status("run", scene, *again, *sets) == 0
-    assert run_hash(load(str(scene), settings=begun)) != before
+    begin_settings = [f'begin_from="{tmp_path / "first"}"']
+    first_hash = run_hash(load(str(scene), settings=begin_settings))
+    run_arguments = ("--transport", "memory", "--out", tmp_path / "first", "--force")
+    set_arguments = (
+        "--set",
+        "output.states=[1.0]",
+        "--set",
+        "end=0.01",
+        "--set",
+        'scheme="parallel"',
+    )
+    assert status("run", scene, *run_arguments, *set_arguments) == 0
+    assert run_hash(load(str(scene), settings=begin_settings)) != first_hash
 
 
 def test_a_folder_may_be_named_from_the_scene_or_from_here(tmp_path, monkeypatch):
     scene = write_scene(tmp_path)
     run(scene, tmp_path / "runs/settle", "end=0.01", "output.states=[1.0]")
-    other = tmp_path / "elsewhere"
-    other.mkdir()
-    for place in (tmp_path, other):
+    elsewhere = tmp_path / "elsewhere"
+    elsewhere.mkdir()
+    for place in (tmp_path, elsewhere):
         monkeypatch.chdir(place)
-        checked = load(str(scene), settings=['begin_from="runs/settle"'])
-        assert checked.beginning.folder == tmp_path / "runs/settle"
+        checked_scene = load(str(scene), settings=['begin_from="runs/settle"'])
+        assert checked_scene.beginning.folder == tmp_path / "runs/settle"
 
 
 def test_an_interrupted_second_stage_is_resumed_with_the_same_bits(tmp_path, monkeypatch):
@@ -153,17 +164,17 @@ def test_an_interrupted_second_stage_is_resumed_with_the_same_bits(tmp_path, mon
     whole, _ = two_stages(scene, tmp_path, 0.03)
     monkeypatch.setattr(snapshots, "remove", lambda paths: None)
     settings = [f'begin_from="{tmp_path / "first"}"', "end=0.03", "output.snapshots=0.01"]
-    checked = load(str(scene), settings=settings)
+    checked_scene = load(str(scene), settings=settings)
     folder = tmp_path / "resumed"
-    simulate.make_folder(checked, folder)
-    assert simulate.simulate(checked, folder) == 0
+    simulate.make_folder(checked_scene, folder)
+    assert simulate.simulate(checked_scene, folder) == 0
     snapshot = folder / "snapshot-20.h5"
     assert simulate.simulate(load(str(scene), settings=settings), folder, snapshot) == 0
     assert is_the_end_of(folder, whole)
 
 
 @pytest.mark.parametrize(
-    ("begin", "said"),
+    ("begin", "message"),
     [
         ('"nowhere"', r"begin_from must be the folder of a run; found 'nowhere'"),
         ('"first"', r"must have kept a state; it has none\. Let it keep one with --set"),
@@ -172,25 +183,25 @@ def test_an_interrupted_second_stage_is_resumed_with_the_same_bits(tmp_path, mon
         ("3", r"begin_from"),
     ],
 )
-def test_what_cannot_be_begun_from_is_refused(tmp_path, monkeypatch, begin, said):
+def test_what_cannot_be_begun_from_is_refused(tmp_path, monkeypatch, begin, message):
     scene = write_scene(tmp_path)
     run(scene, tmp_path / "first", "end=0.01")
     run(scene, tmp_path / "kept", "end=0.01", "output.states=[1.0]")
     monkeypatch.chdir(tmp_path)
-    with pytest.raises(SceneError, match=said):
+    with pytest.raises(SceneError, match=message):
         load(str(scene), settings=[f"begin_from={begin}"])
 
 
 def test_components_of_other_kinds_and_names_are_refused(tmp_path):
     scene = write_scene(tmp_path)
     first = run(scene, tmp_path / "first", "end=0.01", "output.states=[1.0]")
-    other = tmp_path / "other.toml"
+    path = tmp_path / "other.toml"
     text = scene.read_text()
     lines = [f'begin_from = "{first}"', *text.replace("toys:Toy", "echo", 1).splitlines()]
-    other.write_text("\n".join(lines))
+    path.write_text("\n".join(lines))
     with pytest.raises(SceneError, match=r"ping must be of kind toys:Toy, as in .*; found echo"):
-        load(str(other))
-    renamed = text.replace("ping", "a").replace("pong", "b")
-    other.write_text("\n".join([f'begin_from = "{first}"', *renamed.splitlines()]))
+        load(str(path))
+    renamed_text = text.replace("ping", "a").replace("pong", "b")
+    path.write_text("\n".join([f'begin_from = "{first}"', *renamed_text.splitlines()]))
     with pytest.raises(SceneError, match=r"in the run in .* there are ping, pong, here a, b"):
-        load(str(other))
+        load(str(path))

@@ -30,8 +30,8 @@ MPI = pytest.param("mpi", marks=pytest.mark.mpi)
 @pytest.mark.parametrize("name", ALONE + COUPLED)
 def test_components_go_on_with_the_same_bits(tmp_path, name):
     scene, preset, half, *settings = SCENES[name]
-    whole, again = two_stages(scene, tmp_path, half, *settings, preset=preset)
-    assert is_the_end_of(again, whole)
+    whole, continued = two_stages(scene, tmp_path, half, *settings, preset=preset)
+    assert is_the_end_of(continued, whole)
 
 
 @pytest.mark.full
@@ -39,5 +39,7 @@ def test_components_go_on_with_the_same_bits(tmp_path, name):
 @pytest.mark.parametrize("name", SCENES)
 def test_components_go_on_with_the_same_bits_in_processes(tmp_path, name, transport):
     scene, preset, half, *settings = SCENES[name]
-    whole, again = two_stages(scene, tmp_path, half, *settings, transport=transport, preset=preset)
-    assert is_the_end_of(again, whole)
+    whole, continued = two_stages(
+        scene, tmp_path, half, *settings, transport=transport, preset=preset
+    )
+    assert is_the_end_of(continued, whole)

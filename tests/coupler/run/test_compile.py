@@ -24,13 +24,15 @@ def _compiled(folder):
 
 @pytest.mark.slow
 def test_a_run_after_compile_compiles_nothing(tmp_path):
-    ended = _quintet(tmp_path, "compile", "heated_slab")
-    assert ended.returncode == 0 and "compiled in" in ended.stdout
-    before = _compiled(tmp_path / "cache")
-    assert before and [path.name for path in tmp_path.iterdir()] == ["cache"], "no run is left"
-    ended = _quintet(tmp_path, "run", "heated_slab", "--transport", "memory", "--out", "run")
-    assert ended.returncode == 0, ended.stderr
-    assert _compiled(tmp_path / "cache") == before
+    result = _quintet(tmp_path, "compile", "heated_slab")
+    assert result.returncode == 0 and "compiled in" in result.stdout
+    compiled_files = _compiled(tmp_path / "cache")
+    assert compiled_files and [path.name for path in tmp_path.iterdir()] == ["cache"], (
+        "no run is left"
+    )
+    result = _quintet(tmp_path, "run", "heated_slab", "--transport", "memory", "--out", "run")
+    assert result.returncode == 0, result.stderr
+    assert _compiled(tmp_path / "cache") == compiled_files
 
 
 def test_kinds_stand_for_the_scenes_that_use_them():
@@ -42,6 +44,6 @@ def test_kinds_stand_for_the_scenes_that_use_them():
 
 
 def test_a_scene_file_is_compiled_too(tmp_path, capsys):
-    with pytest.raises(SystemExit) as ended:
+    with pytest.raises(SystemExit) as exit_info:
         main(["compile", str(write(tmp_path))])
-    assert ended.value.code == 0 and "spring" in capsys.readouterr().out
+    assert exit_info.value.code == 0 and "spring" in capsys.readouterr().out

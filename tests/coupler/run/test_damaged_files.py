@@ -1,4 +1,4 @@
-"""A run's files that were changed are noticed by all that read them back, or read as they were."""
+"""Every reader of a run's file notices damage, or reads the file as it was written."""
 
 import json
 import os
@@ -18,7 +18,7 @@ RESUMED = ("ledger.csv", "recording.h5", "ping.vtkhdf")
 
 
 @pytest.fixture(scope="module")
-def ended(tmp_path_factory):
+def run_folder(tmp_path_factory):
     """The folder of a run."""
     folder = tmp_path_factory.mktemp("ended")
     path = write_scene(folder, end=0.02)
@@ -27,8 +27,8 @@ def ended(tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
-def killed(tmp_path_factory):
-    """A run that was killed when it had two snapshots, and one that was not."""
+def run_folders(tmp_path_factory):
+    """Folders of a run that was killed when it had two snapshots, and of a whole run."""
     folder = tmp_path_factory.mktemp("killed")
     settings = ("--set", "output.snapshots=0.02", "--set", "output.interval=0.01")
     path = write_scene(folder, "memory", 0.2, pong="pause = 3e-3")
@@ -43,30 +43,30 @@ def killed(tmp_path_factory):
 def flips(path, count):
     """Flip bits of a file one by one."""
     data, random = path.read_bytes(), np.random.default_rng(count)
-    for number in random.integers(8 * len(data), size=count):
-        changed = bytearray(data)
-        changed[number // 8] ^= 1 << int(number % 8)
-        path.write_bytes(changed)
+    for bit in random.integers(8 * len(data), size=count):
+        flipped_data = bytearray(data)
+        flipped_data[bit // 8] ^= 1 << int(bit % 8)
+        path.write_bytes(flipped_data)
         yield
     path.write_bytes(data)
 
 
-def test_results_that_were_changed_are_refused_or_the_same(ended, tmp_path):
-    out = shutil.copytree(ended, tmp_path / "out")
-    before, refused = show.results(out), 0
-    del before["checksums"]
+def test_results_that_were_changed_are_refused_or_the_same(run_folder, tmp_path):
+    out = shutil.copytree(run_folder, tmp_path / "out")
+    original, refusals = show.results(out), 0
+    del original["checksums"]
     for _ in flips(out / "results.json", 300):
         try:
-            found = show.results(out)
-            assert {key: found[key] for key in before} == before
+            results = show.results(out)
+            assert {key: results[key] for key in original} == original
         except quintet.SceneError:
-            refused += 1
-    assert refused > 200
+            refusals += 1
+    assert refusals > 200
 
 
 @pytest.mark.parametrize("name", ["ledger.csv", "scene.toml"])
-def test_what_python_reads_of_a_run_is_as_it_was_written(ended, tmp_path, name):
-    out = shutil.copytree(ended, tmp_path / "out")
+def test_what_python_reads_of_a_run_is_as_it_was_written(run_folder, tmp_path, name):
+    out = shutil.copytree(run_folder, tmp_path / "out")
     run = quintet.load(out)
     assert run.ledger and run.scene
     for _ in flips(out / name, 30):
@@ -74,57 +74,57 @@ def test_what_python_reads_of_a_run_is_as_it_was_written(ended, tmp_path, name):
             _ = run.ledger if name == "ledger.csv" else run.scene
 
 
-def test_results_of_before_are_read(ended, tmp_path):
-    out = shutil.copytree(ended, tmp_path / "out")
-    found = json.loads((out / "results.json").read_text())
-    del found["checksums"]
-    (out / "results.json").write_text(json.dumps(found))
+def test_results_of_before_are_read(run_folder, tmp_path):
+    out = shutil.copytree(run_folder, tmp_path / "out")
+    results = json.loads((out / "results.json").read_text())
+    del results["checksums"]
+    (out / "results.json").write_text(json.dumps(results))
     assert quintet.load(out).ledger and quintet.load(out).ok
 
 
-def test_a_ledger_that_was_changed_is_not_gone_on_with(killed, tmp_path, capsys):
-    again = shutil.copytree(killed[0], tmp_path / "again")
-    size = snapshots.file_sizes(snapshots.latest(again))[0]
-    data = bytearray((again / "ledger.csv").read_bytes())
+def test_a_ledger_that_was_changed_is_not_gone_on_with(run_folders, tmp_path, capsys):
+    copy = shutil.copytree(run_folders[0], tmp_path / "again")
+    size = snapshots.file_sizes(snapshots.latest(copy))[0]
+    data = bytearray((copy / "ledger.csv").read_bytes())
     data[size // 2] ^= 1
-    (again / "ledger.csv").write_bytes(data)
-    assert status("run", "--resume", again) == 2
+    (copy / "ledger.csv").write_bytes(data)
+    assert status("run", "--resume", copy) == 2
     assert "ledger.csv: its first" in capsys.readouterr().err
 
 
-def test_a_recording_that_was_changed_is_not_gone_on_with(killed, tmp_path, capsys):
-    again = shutil.copytree(killed[0], tmp_path / "again")
-    path = again / "recording.h5"
+def test_a_recording_that_was_changed_is_not_gone_on_with(run_folders, tmp_path, capsys):
+    copy = shutil.copytree(run_folders[0], tmp_path / "again")
+    path = copy / "recording.h5"
     os.truncate(path, path.stat().st_size // 2)
-    assert status("run", "--resume", again) == 2
-    said = capsys.readouterr().err
-    assert "not a whole recording" in said and "Traceback" not in said
+    assert status("run", "--resume", copy) == 2
+    message = capsys.readouterr().err
+    assert "not a whole recording" in message and "Traceback" not in message
 
 
-def test_a_run_goes_on_with_files_that_are_whole(killed, tmp_path):
-    again = shutil.copytree(killed[0], tmp_path / "again")
-    assert status("run", "--resume", again) == 0
-    assert same(killed[1], again)
+def test_a_run_goes_on_with_files_that_are_whole(run_folders, tmp_path):
+    copy = shutil.copytree(run_folders[0], tmp_path / "again")
+    assert status("run", "--resume", copy) == 0
+    assert same(run_folders[1], copy)
 
 
 def test_views_that_were_changed_are_not_gone_on_with(tmp_path):
-    path, again = tmp_path / "a.vtkhdf", tmp_path / "b.vtkhdf"
+    path, copy = tmp_path / "a.vtkhdf", tmp_path / "b.vtkhdf"
     random = np.random.default_rng(1)
     file = VtkHdf(path, {"speed": "m/s"}, "toy")
     for k in range(3):
         file.append(0.1 * k, {"points": random.normal(size=(40, 3)), "speed": random.random(40)})
     file.close()
-    check, refused = file.check, 0
-    shutil.copy(path, again)
-    made = resume(again, 1.0, check)
-    assert made.check == check
-    made.close()
-    shutil.copy(path, again)
-    for _ in flips(again, 20):
+    check, refusals = file.check, 0
+    shutil.copy(path, copy)
+    resumed_file = resume(copy, 1.0, check)
+    assert resumed_file.check == check
+    resumed_file.close()
+    shutil.copy(path, copy)
+    for _ in flips(copy, 20):
         try:
-            resume(again, 1.0, check).close()
+            resume(copy, 1.0, check).close()
         except quintet.SceneError as error:
-            refused += 1
-            assert str(again) in str(error)
+            refusals += 1
+            assert str(copy) in str(error)
     with pytest.raises(quintet.SceneError, match="must be as the run wrote them"):
         resume(path, 0.1, check)

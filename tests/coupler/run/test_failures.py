@@ -1,4 +1,4 @@
-"""A run that fails ends soon, says who, when and why, and leaves nothing behind."""
+"""A run that fails ends soon, names component, window and cause, and leaves nothing behind."""
 
 import time
 
@@ -11,13 +11,13 @@ AT = 60  # the window in which a component fails
 OVER = [pytest.param("zenoh", marks=pytest.mark.zenoh), pytest.param("mpi", marks=pytest.mark.mpi)]
 
 
-def failing(folder, transport, by):
-    pong = f'fails_at = {AT}\nfails_by = "{by}"'
+def failing(folder, transport, cause):
+    pong = f'fails_at = {AT}\nfails_by = "{cause}"'
     return Started(write_scene(folder, transport, 100.0, pong=pong))
 
 
 def check_end(run):
-    """Nothing runs any more, and nothing lies in shared memory."""
+    """No process still runs, and no file is left in shared memory."""
     assert not run.processes()
     assert not run.left_in_shared_memory()
 
@@ -40,18 +40,18 @@ def test_a_failed_run_keeps_what_it_has_and_quotes_the_log(tmp_path):
 
 
 @pytest.mark.zenoh
-@pytest.mark.parametrize("by", ["raise", "kill"])
-def test_who_fails_while_another_is_awaited_is_told_at_once(tmp_path, by):
+@pytest.mark.parametrize("cause", ["raise", "kill"])
+def test_who_fails_while_another_is_awaited_is_told_at_once(tmp_path, cause):
     scene = write_scene(
-        tmp_path, "zenoh", 100.0, "pause = 100.0", f'fails_at = 0\nfails_by = "{by}"'
+        tmp_path, "zenoh", 100.0, "pause = 100.0", f'fails_at = 0\nfails_by = "{cause}"'
     )
     scene.write_text('scheme = "parallel"\n' + scene.read_text())
     run = Started(scene)
-    began = time.monotonic()
+    start = time.monotonic()
     assert run.wait() == 3
-    assert time.monotonic() - began < 50.0  # with what starting takes on a loaded machine
+    assert time.monotonic() - start < 50.0  # including the start on a loaded machine
     assert run.results["fault"]["component"] == "pong"
-    assert ("asked to raise" if by == "raise" else "SIGKILL") in run.results["fault"]["cause"]
+    assert ("asked to raise" if cause == "raise" else "SIGKILL") in run.results["fault"]["cause"]
     check_end(run)
 
 
@@ -122,12 +122,12 @@ SAID = {
 
 
 @pytest.mark.parametrize("transport", ["memory", *OVER])
-@pytest.mark.parametrize("by", SAID)
-def test_an_end_that_python_asks_for_and_odd_texts_keep_their_cause(tmp_path, transport, by):
-    run = failing(tmp_path, transport, by)
+@pytest.mark.parametrize("cause", SAID)
+def test_an_end_that_python_asks_for_and_odd_texts_keep_their_cause(tmp_path, transport, cause):
+    run = failing(tmp_path, transport, cause)
     assert run.wait() == 3
     fault = run.results["fault"]
-    assert fault["component"] == "pong" and fault["cause"].startswith(SAID[by])
-    if by == "long":
+    assert fault["component"] == "pong" and fault["cause"].startswith(SAID[cause])
+    if cause == "long":
         assert fault["cause"].endswith("and more to the end")
     check_end(run)

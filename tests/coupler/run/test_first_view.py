@@ -15,9 +15,9 @@ SIZE = 5000  # bytes, of a picture that shows something
 
 
 def status(*arguments: str) -> object:
-    with pytest.raises(SystemExit) as ended:
+    with pytest.raises(SystemExit) as exit_info:
         main(["check", *arguments])
-    return ended.value.code
+    return exit_info.value.code
 
 
 def test_check_draws_the_start_and_no_window_passes(
@@ -27,36 +27,36 @@ def test_check_draws_the_start_and_no_window_passes(
         raise AssertionError("a window was advanced")
 
     monkeypatch.setattr(loop, "advance", refuse)
-    drawn = tmp_path / "start.png"
-    assert status("taylor_bar", "--preset", "quick", "--picture", str(drawn)) == 0
-    assert drawn.stat().st_size > SIZE
-    assert f"picture: {drawn}" in capsys.readouterr().out
+    picture = tmp_path / "start.png"
+    assert status("taylor_bar", "--preset", "quick", "--picture", str(picture)) == 0
+    assert picture.stat().st_size > SIZE
+    assert f"picture: {picture}" in capsys.readouterr().out
     assert [path.name for path in tmp_path.iterdir()] == ["start.png"]
 
 
 def test_all_components_and_walls_are_written_at_time_0(tmp_path: Path) -> None:
     scene = load("two_springs", transport="memory")
-    shown = write_first_view(scene, tmp_path)
-    assert shown
-    for name in shown:
+    names = write_first_view(scene, tmp_path)
+    assert names
+    for name in names:
         (path,) = tmp_path.glob(f"{name}*.vtkhdf")
         assert vtkhdf_reader.times(path).tolist() == [0.0]
     out = three_views.draw_three_views(tmp_path, tmp_path / "start.svg", title="springs")
     text = out.read_text()
-    # Matplotlib names each panel and writes what it draws as comments.
+    # Matplotlib names each panel in a comment of the file.
     assert all(f"<!-- {view} view" in text for view in ("side", "front", "top"))
 
 
 def test_a_picture_that_is_there_is_kept_unless_forced(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    drawn = tmp_path / "start.png"
-    drawn.write_text("mine")
-    assert status("taylor_bar", "--preset", "quick", "--picture", str(drawn)) == 2
-    assert f"--picture {drawn}: it exists" in capsys.readouterr().err
-    assert drawn.read_text() == "mine"
-    assert status("taylor_bar", "--preset", "quick", "--force", "--picture", str(drawn)) == 0
-    assert drawn.stat().st_size > SIZE
+    picture = tmp_path / "start.png"
+    picture.write_text("mine")
+    assert status("taylor_bar", "--preset", "quick", "--picture", str(picture)) == 2
+    assert f"--picture {picture}: it exists" in capsys.readouterr().err
+    assert picture.read_text() == "mine"
+    assert status("taylor_bar", "--preset", "quick", "--force", "--picture", str(picture)) == 0
+    assert picture.stat().st_size > SIZE
 
 
 def test_a_picture_needs_a_known_ending(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -70,10 +70,10 @@ def test_code_of_a_scene_is_not_imported_for_a_picture(
     (tmp_path / "evil.py").write_text("raise AssertionError('it was imported')")
     scene = tmp_path / "scene.toml"
     scene.write_text('name = "evil"\nend = 1.0\n[components.a]\nkind = "evil:Class"\n')
-    drawn = tmp_path / "start.png"
-    assert status(str(scene), "--picture", str(drawn)) == 2
+    picture = tmp_path / "start.png"
+    assert status(str(scene), "--picture", str(picture)) == 2
     assert "evil:Class is code that check does not import by itself" in capsys.readouterr().err
-    assert not drawn.exists()
+    assert not picture.exists()
 
 
 def test_a_picture_whose_folder_is_a_file_is_refused(

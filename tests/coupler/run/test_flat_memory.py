@@ -39,7 +39,7 @@ main()
 """
 
 
-def held():
+def process_memory():
     """Memory of this process alone [bytes]."""
     gc.collect()
     ctypes.CDLL(None).malloc_trim(0)
@@ -53,13 +53,13 @@ def test_a_recording_is_not_kept_in_memory(tmp_path):
         names = ("ping", "pong")
         for name in names:
             recorder.component(name, (PORT,), {})
-        before = 0
+        memory_at_start = 0
         for window in range(1000 + WINDOWS):
             if window == 1000:
-                before = held()
+                memory_at_start = process_memory()
             for name in names:
                 recorder.add(name, Instant(1e-3 * window, window), fields)
-        growth = (held() - before) / WINDOWS
+        growth = (process_memory() - memory_at_start) / WINDOWS
     assert growth < MOST
 
 
@@ -70,16 +70,16 @@ def test_a_recording_is_not_kept_in_memory(tmp_path):
 def test_a_run_holds_as_much_after_thousands_of_windows(tmp_path, transport):
     scene = write_scene(tmp_path, transport, 1e-3 * (1001 + WINDOWS))
     code = RUN.replace("WINDOWS", str(WINDOWS))
-    done = subprocess.run(
+    result = subprocess.run(
         [sys.executable, "-c", code, str(scene), str(tmp_path / "out")],
         capture_output=True,
         text=True,
         timeout=200,
     )
-    assert done.returncode == 0, done.stderr
+    assert result.returncode == 0, result.stderr
     first, last = (
-        list(map(int, line.split()[1:])) for line in done.stdout.splitlines() if "HELD" in line
+        list(map(int, line.split()[1:])) for line in result.stdout.splitlines() if "HELD" in line
     )
     growths = [(after - before) / WINDOWS for before, after in zip(first, last, strict=True)]
-    assert len(growths) == (4 if transport == "zenoh" else 2)  # with the process beside the run
+    assert len(growths) == (4 if transport == "zenoh" else 2)  # including the companion process
     assert max(growths) < MOST_OF_RUN, growths

@@ -1,4 +1,4 @@
-"""Nothing that a user has is deleted: a run's folder is new, or one that this program wrote."""
+"""A user's files are never deleted: a run's folder is new, or one that this program wrote."""
 
 import hashlib
 import json
@@ -21,9 +21,9 @@ STUDY = (
 
 
 def status(*arguments):
-    with pytest.raises(SystemExit) as ended:
-        main([str(one) for one in arguments])
-    return ended.value.code
+    with pytest.raises(SystemExit) as exit_info:
+        main([str(argument) for argument in arguments])
+    return exit_info.value.code
 
 
 def content(folder):
@@ -48,13 +48,13 @@ def test_a_run_does_not_touch_the_folder_of_its_scene(scene, tmp_path, capsys):
     (tmp_path / "log").mkdir()
     (tmp_path / "log" / "diary.txt").write_text("mine")
     (tmp_path / "mine.vtkhdf").write_text("mine")
-    before = content(tmp_path)
+    old_content = content(tmp_path)
     for command in ("run", "study"):
         assert status(command, scene, "--out", ".") == 2
         assert status(command, scene, "--out", ".", "--force") == 2
-    said = capsys.readouterr().err
-    assert said.count("it holds files that no run left (log, mine.vtkhdf, scene.toml, ...)") == 4
-    assert content(tmp_path) == before
+    message = capsys.readouterr().err
+    assert message.count("it holds files that no run left (log, mine.vtkhdf, scene.toml, ...)") == 4
+    assert content(tmp_path) == old_content
 
 
 @pytest.mark.parametrize("name", ["../../x", "/x", "a/b", "..", "", ".hidden", "a b"])
@@ -71,42 +71,42 @@ def test_runs_without_a_folder_are_numbered(scene, tmp_path, capsys):
         assert status("run", scene) == 0
         assert f"left in runs/{folder}\n" in capsys.readouterr().out
         assert read_marker(tmp_path / "runs" / folder).scene == "toy"
-    first = content(tmp_path / "runs" / "toy")
+    first_content = content(tmp_path / "runs" / "toy")
     assert status("run", scene, "--force", "--set", "end=0.003") == 0
     assert "left in runs/toy\n" in capsys.readouterr().out
     assert json.loads((tmp_path / "runs/toy/results.json").read_text())["windows"] == 3
-    assert content(tmp_path / "runs" / "toy").keys() == first.keys()
+    assert content(tmp_path / "runs" / "toy").keys() == first_content.keys()
 
 
 def test_a_run_is_replaced_only_where_asked_and_only_what_it_wrote(scene, tmp_path, capsys):
     out = tmp_path / "out"
     assert status("run", scene, "--out", out) == 0
-    first = content(out)
-    assert {MARKER, "scene.toml", "results.json"} <= first.keys()
+    first_content = content(out)
+    assert {MARKER, "scene.toml", "results.json"} <= first_content.keys()
     assert status("run", scene, "--out", out) == 2
     assert (
         f"--out {out}: it holds a run of toy. Name another folder, or replace it with --force."
         in (capsys.readouterr().err)
     )
-    assert content(out) == first
-    for mine in ("notes.txt", "mine.vtkhdf", "mine.png", "convergence-mine.csv", "log/mine.log"):
-        (out / mine).write_text("mine")
+    assert content(out) == first_content
+    for name in ("notes.txt", "mine.vtkhdf", "mine.png", "convergence-mine.csv", "log/mine.log"):
+        (out / name).write_text("mine")
     assert status("run", scene, "--out", out, "--force", "--set", "end=0.003") == 0
     assert json.loads((out / "results.json").read_text())["windows"] == 3
     assert (out / "notes.txt").read_text() == (out / "mine.vtkhdf").read_text() == "mine"
-    assert content(out).keys() == first.keys() | {
+    assert content(out).keys() == first_content.keys() | {
         "notes.txt", "mine.vtkhdf", "mine.png", "convergence-mine.csv", "log/mine.log"
     }  # fmt: skip
 
 
 @pytest.mark.parametrize(
-    "wrong", [("--swap", "ping=nothing"), ("--elsewhere", "ping"), ("--set", "end=-1")]
+    "arguments", [("--swap", "ping=nothing"), ("--elsewhere", "ping"), ("--set", "end=-1")]
 )
-def test_a_refused_run_leaves_the_former_one(scene, tmp_path, wrong):
+def test_a_refused_run_leaves_the_former_one(scene, tmp_path, arguments):
     assert status("run", scene, "--out", "out") == 0
-    before = content(tmp_path / "out")
-    assert status("run", scene, "--out", "out", "--force", *wrong) == 2
-    assert content(tmp_path / "out") == before
+    old_content = content(tmp_path / "out")
+    assert status("run", scene, "--out", "out", "--force", *arguments) == 2
+    assert content(tmp_path / "out") == old_content
 
 
 def test_a_run_that_is_refused_as_ports_are_joined_leaves_the_former_one(
@@ -118,30 +118,30 @@ def test_a_run_that_is_refused_as_ports_are_joined_leaves_the_former_one(
         raise SceneError("no")
 
     assert status("run", scene, "--out", "out") == 0
-    before = content(tmp_path / "out")
+    old_content = content(tmp_path / "out")
     monkeypatch.setattr(simulate, "run", refuse)
     assert status("run", scene, "--out", "out", "--force") == 2
-    assert content(tmp_path / "out") == before
+    assert content(tmp_path / "out") == old_content
     assert not (tmp_path / "out" / FORMER).exists()
 
 
 @pytest.mark.mpi
 def test_without_a_launcher_the_former_run_stays(scene, tmp_path, monkeypatch):
     assert status("run", scene, "--out", "out") == 0
-    before = content(tmp_path / "out")
+    old_content = content(tmp_path / "out")
     monkeypatch.setenv("PATH", str(tmp_path))
     monkeypatch.setattr(sys, "executable", str(tmp_path / "python"))
     assert status("run", scene, "--out", "out", "--force", "--transport", "mpi") == 2
     assert status("run", scene, "--out", "new", "--transport", "mpi") == 2
-    assert content(tmp_path / "out") == before and not (tmp_path / "new").exists()
+    assert content(tmp_path / "out") == old_content and not (tmp_path / "new").exists()
 
 
 @pytest.mark.parametrize("transport", OVER)
 def test_a_run_in_processes_replaces_a_former_one_alike(scene, tmp_path, transport):
     assert status("run", scene, "--out", "out", "--transport", transport) == 0
-    first = content(tmp_path / "out")
+    first_content = content(tmp_path / "out")
     assert status("run", scene, "--out", "out", "--transport", transport, "--force") == 0
-    assert content(tmp_path / "out").keys() == first.keys()
+    assert content(tmp_path / "out").keys() == first_content.keys()
 
 
 def test_a_file_and_a_folder_that_cannot_be_written_are_told_in_a_sentence(scene, tmp_path, capsys):
@@ -149,9 +149,9 @@ def test_a_file_and_a_folder_that_cannot_be_written_are_told_in_a_sentence(scene
     assert status("run", scene, "--out", "file") == 2
     assert status("run", scene, "--out", "file/below") == 2
     assert status("run", scene, "--out", "/proc/none") == 2
-    said = capsys.readouterr().err
-    assert "it must be a folder; it is a file. Name another." in said
-    assert said.count("it cannot be written (") == 2 and "Traceback" not in said
+    message = capsys.readouterr().err
+    assert "it must be a folder; it is a file. Name another." in message
+    assert message.count("it cannot be written (") == 2 and "Traceback" not in message
     assert (tmp_path / "file").read_text() == "mine"
 
 
@@ -161,8 +161,8 @@ def test_two_runs_in_one_folder_do_not_mix(tmp_path, capsys):
     run.wait_until(lambda: (run.folder / "recording.h5").is_file())
     for command in (["run", path, "--out", run.folder, "--force"], ["run", "--resume", run.folder]):
         assert status(*command) == 2
-    said = capsys.readouterr().err
-    assert "another run is using it. Wait for its end, or name another folder." in said
+    message = capsys.readouterr().err
+    assert "another run is using it. Wait for its end, or name another folder." in message
     assert run.wait() == 0 and run.results["windows"] == 100
 
 
@@ -187,15 +187,15 @@ def test_only_a_run_is_resumed(scene, tmp_path, capsys):
 def test_a_study_replaces_only_what_a_study_wrote(scene, tmp_path, capsys):
     out = tmp_path / "all"
     assert status("study", scene, "--out", out) == 0
-    first = content(out)
+    first_content = content(out)
     assert status("study", scene, "--out", out) == 2
     assert "it holds a study of toy." in capsys.readouterr().err
     assert status("run", scene, "--out", out, "--force") == 2
-    assert content(out) == first
+    assert content(out) == first_content
     assert status("study", scene, "--out", out, "--keep") == 0
     (out / "notes.txt").write_text("mine")
     assert status("study", scene, "--out", out, "--force") == 0
-    assert content(out).keys() == first.keys() | {"notes.txt"}
+    assert content(out).keys() == first_content.keys() | {"notes.txt"}
     assert (out / "a" / "run.log").read_text()
 
 
@@ -203,9 +203,9 @@ def test_a_study_begins_nothing_where_a_run_would_meet_foreign_files(scene, tmp_
     out = tmp_path / "all"
     assert status("study", scene, "--out", out) == 0
     (out / "b" / MARKER).unlink()
-    before = content(out)
+    old_content = content(out)
     assert status("study", scene, "--out", out, "--keep") == 2
-    assert content(out) == before
+    assert content(out) == old_content
 
 
 def test_python_follows_the_same_rules(scene, tmp_path):

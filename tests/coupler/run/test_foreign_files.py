@@ -1,4 +1,4 @@
-"""No command changes a byte of a file that is not its own, and each says so in one sentence."""
+"""No command changes a byte of a foreign file, and each refuses it in one sentence."""
 
 import json
 import subprocess
@@ -28,8 +28,8 @@ COMMANDS = {
 
 
 @pytest.fixture
-def here(tmp_path, monkeypatch):
-    """A folder with a scene and other files of a user, which is the current one."""
+def user_folder(tmp_path, monkeypatch):
+    """The current folder, with a scene and other files of a user."""
     monkeypatch.chdir(tmp_path)
     write_scene(tmp_path, end=0.005)
     (tmp_path / "log").mkdir()
@@ -39,47 +39,47 @@ def here(tmp_path, monkeypatch):
     return tmp_path
 
 
-def only_sentence(capsys, words):
-    said = [one for one in capsys.readouterr().err.splitlines() if one]
-    assert len(said) == 1 and said[0].startswith("quintet: ") and words in said[0], said
+def only_sentence(capsys, sentence):
+    lines = [line for line in capsys.readouterr().err.splitlines() if line]
+    assert len(lines) == 1 and lines[0].startswith("quintet: ") and sentence in lines[0], lines
 
 
 @pytest.mark.parametrize("command", COMMANDS)
 @pytest.mark.parametrize("kind", FOREIGN)
-def test_json_goes_to_no_foreign_file(here, capsys, command, kind):
-    (here / kind).write_text(FOREIGN[kind])
-    before = content(here)
+def test_json_goes_to_no_foreign_file(user_folder, capsys, command, kind):
+    (user_folder / kind).write_text(FOREIGN[kind])
+    old_content = content(user_folder)
     assert status(*COMMANDS[command], "--json", kind) == 2
     only_sentence(capsys, f"--json {kind}: it must be new, or what this command left there before")
-    assert content(here) == before
+    assert content(user_folder) == old_content
 
 
-def test_json_that_the_same_command_left_is_replaced(here):
+def test_json_that_the_same_command_left_is_replaced(user_folder):
     for _ in range(2):
         assert status(*COMMANDS["conform"], "--json", "found.json") in (0, 1)
-        assert json.loads((here / "found.json").read_text())["kind"] == "toys:Toy"
+        assert json.loads((user_folder / "found.json").read_text())["kind"] == "toys:Toy"
 
 
 @pytest.mark.parametrize("command", ["run", "study", "stability"])
-@pytest.mark.parametrize("where", [".", "log", "link"])
-def test_a_folder_of_the_user_stays_as_it_is(here, capsys, command, where):
-    (here / "link").symlink_to(here)
-    before = content(here)
-    extra = (
+@pytest.mark.parametrize("out", [".", "log", "link"])
+def test_a_folder_of_the_user_stays_as_it_is(user_folder, capsys, command, out):
+    (user_folder / "link").symlink_to(user_folder)
+    old_content = content(user_folder)
+    stability = (
         '[[stability]]\nparameter = "components.ping.pause"\nfrom = 0.0\nto = 1.0\n'
         if command == "stability"
         else ""
     )
-    (here / "scene.toml").write_text((here / "scene.toml").read_text() + extra)
+    (user_folder / "scene.toml").write_text((user_folder / "scene.toml").read_text() + stability)
     if command == "study":
-        (here / "scene.toml").write_text(
-            (here / "scene.toml").read_text() + '[[study]]\nlabel = "a"\nsettings = {}\n'
+        (user_folder / "scene.toml").write_text(
+            (user_folder / "scene.toml").read_text() + '[[study]]\nlabel = "a"\nsettings = {}\n'
         )
-    before = content(here)
+    old_content = content(user_folder)
     for force in ([], ["--force"]):
-        assert status(command, "scene.toml", "--out", where, *force) == 2
+        assert status(command, "scene.toml", "--out", out, *force) == 2
         only_sentence(capsys, "it holds files that no run left")
-        assert content(here) == before
+        assert content(user_folder) == old_content
 
 
 def started(*arguments):
@@ -87,25 +87,25 @@ def started(*arguments):
     return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
 
-def test_of_runs_at_once_in_one_folder_one_runs_and_the_others_say_so(here):
+def test_of_runs_at_once_in_one_folder_one_runs_and_the_others_say_so(user_folder):
     runs = [started("--out", "out") for _ in range(AT_ONCE)]
-    said = [run.communicate(timeout=120)[1] for run in runs]
+    errors = [run.communicate(timeout=120)[1] for run in runs]
     assert sorted(run.returncode for run in runs) == [0] + [2] * (AT_ONCE - 1)
-    for run, text in zip(runs, said, strict=True):
+    for run, text in zip(runs, errors, strict=True):
         if run.returncode:
             assert len(text.splitlines()) == 1
             assert "another run is using it." in text or "it holds a run of toy." in text
     assert status("run", "scene.toml", "--out", "alone") == 0
-    assert same(here / "alone", here / "out")
-    assert content(here / "out").keys() == content(here / "alone").keys()
+    assert same(user_folder / "alone", user_folder / "out")
+    assert content(user_folder / "out").keys() == content(user_folder / "alone").keys()
 
 
-def test_runs_at_once_without_a_folder_have_one_each(here):
+def test_runs_at_once_without_a_folder_have_one_each(user_folder):
     runs = [started() for _ in range(AT_ONCE)]
     for run in runs:
         assert run.communicate(timeout=120) and run.returncode == 0
     assert status("run", "scene.toml", "--out", "alone") == 0
-    folders = sorted((here / "runs").iterdir())
-    assert [one.name for one in folders] == ["toy", *(f"toy-{n + 2}" for n in range(AT_ONCE - 1))]
+    folders = sorted((user_folder / "runs").iterdir())
+    assert [path.name for path in folders] == ["toy", *(f"toy-{n + 2}" for n in range(AT_ONCE - 1))]
     for folder in folders:
-        assert (folder / MARKER).is_file() and same(here / "alone", folder)
+        assert (folder / MARKER).is_file() and same(user_folder / "alone", folder)

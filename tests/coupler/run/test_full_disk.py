@@ -13,26 +13,33 @@ from started import same
 
 from quintet.coupler.launch.mpi_job import JOB_FILE, _read, _write
 
-SOON = 5.0  # s, with what reading the results of a machine under load takes
+SOON = 5.0  # s, including reading the results on a loaded machine
 
 
 @pytest.fixture
 def disk(request, tmp_path):
     """A small disk, or a limit on sizes."""
-    made = make_disk(request.param, tmp_path)
-    yield made
-    made.close()
+    small_disk = make_disk(request.param, tmp_path)
+    yield small_disk
+    small_disk.close()
 
 
-def check_goes_on(scene, folder, disk, chosen, tmp_path):
+def check_goes_on(scene, folder, disk, settings, tmp_path):
     """The run goes on to the same bits as one that always had room."""
     command = [sys.executable, "-m", "quintet.coupler.cli", "run"]
-    resumed = [*disk.within, *command, "--resume", str(disk.place / "out")]
-    again = subprocess.run(resumed, capture_output=True, text=True)
-    assert again.returncode == 0, again.stdout + again.stderr
+    resume_command = [*disk.within, *command, "--resume", str(disk.place / "out")]
+    result = subprocess.run(resume_command, capture_output=True, text=True)
+    assert result.returncode == 0, result.stdout + result.stderr
     shutil.copytree(folder, tmp_path / "resumed")
-    whole = [*command, str(scene), "--transport", "memory", "--out", str(tmp_path / "whole")]
-    subprocess.run([*whole, *chosen], check=True, capture_output=True)
+    whole_command = [
+        *command,
+        str(scene),
+        "--transport",
+        "memory",
+        "--out",
+        str(tmp_path / "whole"),
+    ]
+    subprocess.run([*whole_command, *settings], check=True, capture_output=True)
     assert same(tmp_path / "whole", tmp_path / "resumed")
 
 
@@ -50,20 +57,20 @@ OTHERS = [
     for kind in ("disk", "limit")
     for name in WRITERS
     for transport, *marks in (("memory",), ("zenoh", ZENOH), ("mpi", MPI))
-    if (kind, name, transport) not in [one.values for one in BY_DEFAULT]
+    if (kind, name, transport) not in [parameters.values for parameters in BY_DEFAULT]
 ]
 
 
 @pytest.mark.parametrize(("disk", "name", "transport"), [*BY_DEFAULT, *OTHERS], indirect=["disk"])
 def test_a_run_on_a_full_disk_ends_and_goes_on_when_there_is_room(tmp_path, disk, name, transport):
-    run, scene, chosen = start(tmp_path, disk, transport, name)
+    run, scene, settings = start(tmp_path, disk, transport, name)
     fill(run, disk, name)
-    began = time.monotonic()
+    start_time = time.monotonic()
     run.wait()
-    assert time.monotonic() - began < SOON
+    assert time.monotonic() - start_time < SOON
     assert broken_rules(run, disk, name) == [], run.err
     disk.empty()
-    check_goes_on(scene, disk.seen(run.folder), disk, chosen, tmp_path)
+    check_goes_on(scene, disk.seen(run.folder), disk, settings, tmp_path)
 
 
 @pytest.mark.parametrize("disk", ["disk"], indirect=True)
@@ -110,9 +117,9 @@ views.close()
 
 def test_files_of_hdf5_whose_writing_fails_end_no_process(tmp_path):
     command = [sys.executable, "-c", WITHOUT_ROOM_MADE_SURE_OF]
-    found = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
-    assert found.returncode == 0, found.stderr
-    lines = found.stdout.splitlines()
+    result = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
+    assert result.returncode == 0, result.stderr
+    lines = result.stdout.splitlines()
     assert [line.partition(":")[0] for line in lines] == ["recording.h5", "views.vtkhdf"]
     assert all("allows no file so large" in line for line in lines)
 

@@ -1,4 +1,4 @@
-"""With more time after SIGTERM a run ends its window and leaves a snapshot of it."""
+"""With more time after SIGTERM, a run finishes its window and leaves a snapshot of it."""
 
 import signal
 import time
@@ -8,9 +8,9 @@ from started import Started, write_scene
 
 
 @pytest.mark.zenoh
-@pytest.mark.parametrize(("arguments", "saved"), [((), False), (("--grace", "20"), True)])
-def test_a_long_window_ends_in_a_snapshot_if_it_is_given_time(tmp_path, arguments, saved):
-    """Of a window of 2.5 s no more than 0.7 s are waited for otherwise."""
+@pytest.mark.parametrize(("arguments", "has_snapshot"), [((), False), (("--grace", "20"), True)])
+def test_a_long_window_ends_in_a_snapshot_if_it_is_given_time(tmp_path, arguments, has_snapshot):
+    """Without more grace, the run waits at most 0.7 s of a window of 2.5 s."""
     scene = write_scene(tmp_path, "zenoh", 1.0, pong="pause = 2.5\ntalks = true")
     run = Started(scene, *arguments)
     log = run.folder / "log/pong.log"
@@ -18,7 +18,7 @@ def test_a_long_window_ends_in_a_snapshot_if_it_is_given_time(tmp_path, argument
     time.sleep(0.5)  # the second window is under way
     run.process.send_signal(signal.SIGTERM)
     assert run.wait() == 130
-    assert bool(list(run.folder.glob("snapshot-*.h5"))) == saved
+    assert bool(list(run.folder.glob("snapshot-*.h5"))) == has_snapshot
     assert run.results["status"] == "interrupted"
 
 

@@ -1,4 +1,4 @@
-"""A run that is asked to end does so in order; one whose coupler is killed does not go on."""
+"""A run that receives a signal ends in order; a run whose coupler is killed does not go on."""
 
 import json
 import os
@@ -23,9 +23,9 @@ IN_TURN = {  # one transport by default, all of them under -m full
     ]
     for default in ("memory", "zenoh")
 }
-SOON = 2.0 + 1.0  # s: what the README promises, and one for the other tests on the machine
+SOON = 2.0 + 1.0  # s: the promise of the README, and 1 s for the other tests on the machine
 LONG = 60.0  # s, of a window that nothing waits for
-LOADED = 20.0  # s that a loaded machine may need for what it should do at once; less than LONG
+LOADED = 20.0  # s that a loaded machine may need for an immediate action; less than LONG
 
 
 def running(folder, transport):
@@ -36,25 +36,25 @@ def running(folder, transport):
 
 
 def interrupted(tmp_path, transport, number):
-    """Interrupt a run in the middle of its windows; return it and after how long [s] it ended."""
+    """Interrupt a run in the middle of its windows; return it and the seconds until it ended."""
     if transport == "memory":  # its log is the terminal's
         run = Started(write_scene(tmp_path, transport, 1000.0, pong="pause = 1e-3"))
         run.wait_until(lambda: (run.folder / "recording.h5").is_file())
         time.sleep(1.5)
     else:
         run = running(tmp_path, transport)
-    began = time.monotonic()
+    start = time.monotonic()
     if number == signal.SIGINT:  # a terminal sends it to all of the foreground
         os.killpg(run.process.pid, number)
     else:
         run.process.send_signal(number)
     run.out, run.err = run.process.communicate(timeout=30)
-    took = time.monotonic() - began
-    left = run.processes()
+    seconds = time.monotonic() - start
+    processes = run.processes()
     run.end()
-    print(f"{transport} {number.name}: ended after {took:.2f} s")
-    assert not left
-    return run, took
+    print(f"{transport} {number.name}: ended after {seconds:.2f} s")
+    assert not processes
+    return run, seconds
 
 
 def check_interrupted(run, transport, number):
@@ -81,8 +81,8 @@ def check_interrupted(run, transport, number):
     ],
 )
 def test_an_interrupted_run_keeps_what_it_has(tmp_path, transport, number):
-    run, took = interrupted(tmp_path, transport, number)
-    assert took < LOADED
+    run, seconds = interrupted(tmp_path, transport, number)
+    assert seconds < LOADED
     check_interrupted(run, transport, number)
 
 
@@ -90,36 +90,36 @@ def test_an_interrupted_run_keeps_what_it_has(tmp_path, transport, number):
 @pytest.mark.parametrize("transport", ["memory", *OVER])
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_an_interrupted_run_ends_in_time(tmp_path, transport, number):
-    run, took = interrupted(tmp_path, transport, number)
-    assert took < SOON
+    run, seconds = interrupted(tmp_path, transport, number)
+    assert seconds < SOON
     check_interrupted(run, transport, number)
 
 
 @pytest.fixture
-def heard():
+def interrupt_handler():
     """Interruptions raise `KeyboardInterrupt`: shells start background jobs that ignore them."""
-    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    handler = signal.signal(signal.SIGINT, signal.default_int_handler)
     yield
-    signal.signal(signal.SIGINT, before)
+    signal.signal(signal.SIGINT, handler)
 
 
-@pytest.mark.usefixtures("heard")
+@pytest.mark.usefixtures("interrupt_handler")
 def test_an_interruption_while_pictures_are_drawn_keeps_the_results(tmp_path, monkeypatch, capsys):
-    def interrupted(*_):
+    def interrupt(*_):
         os.kill(os.getpid(), signal.SIGINT)
         time.sleep(10.0)
 
-    monkeypatch.setattr(results, "draw_run", interrupted)
+    monkeypatch.setattr(results, "draw_run", interrupt)
     monkeypatch.setattr(results, "view_files", lambda _: [tmp_path])
     path = write_scene(tmp_path, end=0.01)
-    with pytest.raises(SystemExit) as ended:
+    with pytest.raises(SystemExit) as exit_info:
         main(["run", str(path), "--set", "output.pictures=[0.01]", "--out", str(tmp_path / "out")])
-    told = capsys.readouterr()
-    assert ended.value.code == 130, "the exit status must be that of an interruption"
-    assert "pictures left out" in told.err and "Traceback" not in told.err
-    assert "toy: done, 10 windows" in told.out
-    found = json.loads((tmp_path / "out" / "results.json").read_text())
-    assert found["status"] == "done" and found["windows"] == 10
+    screen = capsys.readouterr()
+    assert exit_info.value.code == 130, "the exit status must be that of an interruption"
+    assert "pictures left out" in screen.err and "Traceback" not in screen.err
+    assert "toy: done, 10 windows" in screen.out
+    run_results = json.loads((tmp_path / "out" / "results.json").read_text())
+    assert run_results["status"] == "done" and run_results["windows"] == 10
 
 
 @pytest.mark.zenoh
@@ -130,29 +130,29 @@ def test_a_second_request_does_not_wait_for_the_window(tmp_path, number):
     run = Started(scene, "--grace", str(LONG))
     run.wait_until(lambda: (run.folder / "recording.h5").is_file())
     time.sleep(0.5)
-    began = time.monotonic()
+    start = time.monotonic()
     run.process.send_signal(number)
     assert any("ending after this window" in line for line in run.process.stderr)
     run.process.send_signal(number)
     run.process.communicate(timeout=LONG)
-    assert run.process.returncode == 130 and time.monotonic() - began < LOADED
+    assert run.process.returncode == 130 and time.monotonic() - start < LOADED
     assert run.results["status"] == "interrupted" and not run.processes()
 
 
-def wait_for_the_end(run, began):
+def wait_for_the_end(run, start):
     while run.processes():
-        assert time.monotonic() - began < LOADED, "components outlived their coupler"
+        assert time.monotonic() - start < LOADED, "components outlived their coupler"
         time.sleep(0.02)
-    return time.monotonic() - began
+    return time.monotonic() - start
 
 
 @pytest.mark.zenoh
 def test_components_end_when_their_coupler_is_killed(tmp_path):
     run = running(tmp_path, "zenoh")
-    began = time.monotonic()
+    start = time.monotonic()
     run.process.kill()
     try:
-        print(f"zenoh: ended {wait_for_the_end(run, began):.2f} s after the coupler")
+        print(f"zenoh: ended {wait_for_the_end(run, start):.2f} s after the coupler")
     finally:
         run.end()
         run.process.communicate()
@@ -161,21 +161,21 @@ def test_components_end_when_their_coupler_is_killed(tmp_path):
 
 
 @pytest.mark.mpi
-@pytest.mark.parametrize("who", ["the process that started the job", "the coupler's rank"])
-def test_an_mpi_job_ends_when_its_coupler_is_killed(tmp_path, who):
+@pytest.mark.parametrize("victim", ["the process that started the job", "the coupler's rank"])
+def test_an_mpi_job_ends_when_its_coupler_is_killed(tmp_path, victim):
     run = running(tmp_path, "mpi")
-    began = time.monotonic()
-    if "rank" in who:
+    start = time.monotonic()
+    if "rank" in victim:
         note = (run.folder / "log" / "mpi.json").read_text()
         os.kill(int(note.partition('"coupler": ')[2].partition(",")[0]), signal.SIGKILL)
     else:
         run.process.kill()
     try:
-        print(f"mpi: ended {wait_for_the_end(run, began):.2f} s after {who}")
+        print(f"mpi: ended {wait_for_the_end(run, start):.2f} s after {victim}")
         err = run.process.communicate(timeout=10)[1]
     finally:
         run.end()
-    if "rank" in who:
+    if "rank" in victim:
         assert run.process.returncode == 3
         assert "quintet: the coupler was killed by signal 9 (SIGKILL)" in err
         assert run.results["fault"]["component"] == "coupler"
@@ -195,23 +195,23 @@ def test_a_run_whose_terminal_is_closed_leaves_a_snapshot(tmp_path, transport):
         )  # under nohup it is ignored, and that is passed on
         os.execv(command[0], [*command, "--out", str(out)])
     read_until(terminal, lambda: (out / "recording.h5").is_file())
-    began = time.monotonic()
-    read_until(terminal, lambda: time.monotonic() > began + 1.0)
+    start = time.monotonic()
+    read_until(terminal, lambda: time.monotonic() > start + 1.0)
     os.close(terminal)
     assert status_within(20.0, pid) == 130
-    found = json.loads((out / "results.json").read_text())
-    assert found["status"] == "interrupted" and "--resume" in found["resume"]
-    assert [path.name for path in snapshots(out)] == [f"snapshot-{found['windows']}.h5"]
+    run_results = json.loads((out / "results.json").read_text())
+    assert run_results["status"] == "interrupted" and "--resume" in run_results["resume"]
+    assert [path.name for path in snapshots(out)] == [f"snapshot-{run_results['windows']}.h5"]
 
 
 @pytest.mark.parametrize("transport", IN_TURN["zenoh"])
 def test_a_run_under_nohup_goes_on_without_its_terminal(tmp_path, transport):
     path = write_scene(tmp_path, transport, 1000.0, pong="pause = 1e-3")
-    former = signal.signal(signal.SIGHUP, signal.SIG_IGN)  # as nohup does; children inherit it
+    handler = signal.signal(signal.SIGHUP, signal.SIG_IGN)  # as nohup does; children inherit it
     try:
         run = Started(path)
     finally:
-        signal.signal(signal.SIGHUP, former)
+        signal.signal(signal.SIGHUP, handler)
     run.wait_until(lambda: (run.folder / "recording.h5").is_file())
     os.killpg(run.process.pid, signal.SIGHUP)
     time.sleep(1.0)
@@ -226,8 +226,8 @@ def status_within(seconds, pid):
     """Exit status of a child that ends soon; it is killed if it does not."""
     limit = time.monotonic() + seconds
     while time.monotonic() < limit:
-        ended, status = os.waitpid(pid, os.WNOHANG)
-        if ended:
+        ended_pid, status = os.waitpid(pid, os.WNOHANG)
+        if ended_pid:
             return os.waitstatus_to_exitcode(status)
         time.sleep(0.05)
     os.kill(pid, signal.SIGKILL)
@@ -235,10 +235,10 @@ def status_within(seconds, pid):
     raise AssertionError(f"still running {seconds:g} s later")
 
 
-def read_until(terminal, true):
-    """Read what is said to a terminal until something is true."""
+def read_until(terminal, condition):
+    """Read the output on a terminal until a condition holds."""
     limit = time.monotonic() + 60.0
-    while not true():
+    while not condition():
         assert time.monotonic() < limit
         if select.select([terminal], [], [], 0.05)[0]:
             os.read(terminal, 1 << 12)
@@ -249,15 +249,15 @@ def read_until(terminal, true):
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 @pytest.mark.parametrize("delay", [0.0, 0.05, 0.1, 0.2, 0.3, 0.5, 0.8, 1.2])
 def test_a_signal_in_any_phase_leaves_results_and_nothing_else(tmp_path, transport, number, delay):
-    """Building, starting, joining, the first window: counted from when the folder is made."""
+    """Building, starting, joining, the first window; the delay counts from the new folder."""
     run = Started(write_scene(tmp_path, transport, 1000.0, pong="pause = 1e-3"))
     run.wait_until((run.folder / "scene.toml").is_file)
     time.sleep(delay)
     os.killpg(run.process.pid, number) if number == signal.SIGINT else run.process.terminate()
     run.out, run.err = run.process.communicate(timeout=30)
-    left, shared = run.left_processes(5.0), run.left_in_shared_memory()
+    processes, shared = run.left_processes(5.0), run.left_in_shared_memory()
     run.end()
-    assert not left and not shared
+    assert not processes and not shared
     assert run.process.returncode in (130, -number), "the latter before signals are handled"
     assert "Traceback" not in run.err
     if run.process.returncode == 130 and "quintet: interrupted" not in run.err:

@@ -1,4 +1,4 @@
-"""A run whose own process is killed leaves its results, and the line that tells how to go on."""
+"""A run whose own process is killed leaves its results, and the command that resumes it."""
 
 import json
 import os
@@ -28,38 +28,38 @@ def _is_hydra():
     return "-disable-auto-cleanup" in find_launcher()
 
 
-@pytest.mark.parametrize(("transport", "who"), CASES)
-def test_a_killed_coupler_leaves_results_and_the_way_to_resume(tmp_path, transport, who):
+@pytest.mark.parametrize(("transport", "victim"), CASES)
+def test_a_killed_coupler_leaves_results_and_the_way_to_resume(tmp_path, transport, victim):
     scene = write_scene(tmp_path, transport, 1000.0, pong="pause = 1e-3")
     run = Started(scene, "--set", "output.snapshots=0.02")
     run.wait_for_windows()
     run.wait_until(lambda: list(run.folder.glob("snapshot-*.h5")))
     pid = run.process.pid
-    if who == "coupler":
+    if victim == "coupler":
         pid = json.loads((run.folder / "log" / "mpi.json").read_text())["coupler"]
     launcher_files = _open_launcher_files(run)
     assert bool(launcher_files) == (transport == "mpi") or not _is_hydra()
     os.kill(pid, signal.SIGKILL)
     run.out, run.err = run.process.communicate(timeout=30)
-    left, shared = run.left_processes(5.0), run.left_in_shared_memory()
+    processes, shared = run.left_processes(5.0), run.left_in_shared_memory()
     run.end()
-    assert not left and not shared
+    assert not processes and not shared
     assert not launcher_files or not launcher_files & set(Path("/tmp").glob("hydra_hwloc*"))
-    found = json.loads((run.folder / "results.json").read_text())
-    assert found["windows"] >= 20 and found["time"] == pytest.approx(1e-3 * found["windows"])
-    assert found["resume"].startswith("quintet run --resume")
+    results = json.loads((run.folder / "results.json").read_text())
+    assert results["windows"] >= 20 and results["time"] == pytest.approx(1e-3 * results["windows"])
+    assert results["resume"].startswith("quintet run --resume")
     assert "to go on: quintet run --resume" in run.err
-    if who == "starter" and transport == "mpi":  # the coupler's rank is alive, and ends in order
-        assert found["status"] == "interrupted"
+    if victim == "starter" and transport == "mpi":  # the coupler's rank is alive, and ends in order
+        assert results["status"] == "interrupted"
         return
-    assert found["status"] == "failed" and found["fault"]["component"] == "coupler"
-    said = "killed by signal 9 (SIGKILL)" if who == "coupler" else "it was killed"
-    assert said in found["fault"]["cause"] and said in run.err
+    assert results["status"] == "failed" and results["fault"]["component"] == "coupler"
+    message = "killed by signal 9 (SIGKILL)" if victim == "coupler" else "it was killed"
+    assert message in results["fault"]["cause"] and message in run.err
 
 
 @pytest.mark.zenoh
 def test_no_companion_is_left_after_a_run(tmp_path):
     run = Started(write_scene(tmp_path, "zenoh", 0.01))
     assert run.wait() == 0 and not run.left_processes()
-    found = json.loads((run.folder / "results.json").read_text())
-    assert found["status"] == "done", "its companion wrote nothing"
+    results = json.loads((run.folder / "results.json").read_text())
+    assert results["status"] == "done", "its companion wrote nothing"

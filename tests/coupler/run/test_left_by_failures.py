@@ -1,4 +1,4 @@
-"""What a failed run leaves: the pictures that were due before the fault, and no name of no file."""
+"""A failed run leaves the pictures due before the fault, and names only files that exist."""
 
 import json
 
@@ -28,5 +28,5 @@ def test_a_failure_over_memory_names_no_log(tmp_path, capsys):
     out = _failed(tmp_path, "[]")
     fault = json.loads((out / "results.json").read_text())["fault"]
     assert fault["component"] == "pong" and fault["log"] == ""
-    printed = capsys.readouterr()
-    assert "pong.log" not in printed.err + printed.out
+    screen = capsys.readouterr()
+    assert "pong.log" not in screen.err + screen.out

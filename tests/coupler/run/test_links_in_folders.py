@@ -1,4 +1,4 @@
-"""Nothing is written, moved or removed through a link in a run's folder."""
+"""No file is written, moved or removed through a link in a run's folder."""
 
 import os
 import shutil
@@ -31,7 +31,7 @@ FOLDERS = ["log", FORMER]
 
 
 @pytest.fixture(scope="module")
-def ended(tmp_path_factory):
+def scene_folder(tmp_path_factory):
     """A scene, and the folder of a run of it."""
     folder = tmp_path_factory.mktemp("ended")
     path = write_scene(folder, end=0.005)
@@ -41,9 +41,9 @@ def ended(tmp_path_factory):
 
 
 @pytest.fixture
-def here(ended, tmp_path):
-    """Copies of them, beside a folder of somebody else."""
-    shutil.copytree(ended, tmp_path, dirs_exist_ok=True)
+def user_folder(scene_folder, tmp_path):
+    """Copies of the scene and its run, beside a folder of somebody else."""
+    shutil.copytree(scene_folder, tmp_path, dirs_exist_ok=True)
     (tmp_path / "foreign" / "log").mkdir(parents=True)
     for name in ("mine.txt", "ledger.csv", "log/ping.log"):
         (tmp_path / "foreign" / name).write_text("mine")
@@ -51,7 +51,7 @@ def here(ended, tmp_path):
 
 
 def put(place, make):
-    """Put something in a place, whatever is there."""
+    """Make an entry at a place, instead of the present one."""
     place.parent.mkdir(exist_ok=True)
     if place.is_dir():
         shutil.rmtree(place)
@@ -59,33 +59,41 @@ def put(place, make):
     make(place)
 
 
-def refused(here, capsys, words, *arguments):
-    """Whether a command is refused in one sentence, with nothing changed."""
-    before = content(here)
+def is_refused(user_folder, capsys, words, *arguments):
+    """Whether a command is refused in one sentence, with all files unchanged."""
+    old_content = content(user_folder)
     assert status(*arguments) == 2
-    said = capsys.readouterr().err.splitlines()
-    assert len(said) == 1 and words in said[0], said
-    assert content(here) == before
+    lines = capsys.readouterr().err.splitlines()
+    assert len(lines) == 1 and words in lines[0], lines
+    assert content(user_folder) == old_content
     return True
 
 
-@pytest.mark.parametrize("how", ["--force", "--resume"])
+@pytest.mark.parametrize("option", ["--force", "--resume"])
 @pytest.mark.parametrize("name", PLACES)
-def test_a_link_in_the_place_of_a_file_is_refused(here, capsys, name, how):
-    out, foreign = here / "out", here / "foreign" / "mine.txt"
+def test_a_link_in_the_place_of_a_file_is_refused(user_folder, capsys, name, option):
+    out, foreign = user_folder / "out", user_folder / "foreign" / "mine.txt"
     put(out / name, lambda place: place.symlink_to(foreign))
-    asked = ["--resume", out] if how == "--resume" else [here / "scene.toml", "--out", out, how]
-    assert refused(here, capsys, f"{name} must be this folder's own", "run", *asked)
+    arguments = (
+        ["--resume", out]
+        if option == "--resume"
+        else [user_folder / "scene.toml", "--out", out, option]
+    )
+    assert is_refused(user_folder, capsys, f"{name} must be this folder's own", "run", *arguments)
 
 
-@pytest.mark.parametrize("how", ["--force", "--resume"])
+@pytest.mark.parametrize("option", ["--force", "--resume"])
 @pytest.mark.parametrize("name", FOLDERS)
-def test_a_link_in_the_place_of_a_folder_is_refused(here, capsys, name, how):
-    out = here / "out"
-    put(out / name, lambda place: place.symlink_to(here / "foreign"))
-    asked = ["--resume", out] if how == "--resume" else [here / "scene.toml", "--out", out, how]
-    words = f"it is a symbolic link to {here / 'foreign'}."
-    assert refused(here, capsys, words, "run", *asked)
+def test_a_link_in_the_place_of_a_folder_is_refused(user_folder, capsys, name, option):
+    out = user_folder / "out"
+    put(out / name, lambda place: place.symlink_to(user_folder / "foreign"))
+    arguments = (
+        ["--resume", out]
+        if option == "--resume"
+        else [user_folder / "scene.toml", "--out", out, option]
+    )
+    words = f"it is a symbolic link to {user_folder / 'foreign'}."
+    assert is_refused(user_folder, capsys, words, "run", *arguments)
 
 
 @pytest.mark.parametrize(
@@ -97,33 +105,40 @@ def test_a_link_in_the_place_of_a_folder_is_refused(here, capsys, name, how):
         (lambda place: place.symlink_to("nowhere"), "a symbolic link to nowhere"),
     ],
 )
-def test_what_is_no_plain_file_is_refused(here, capsys, make, words):
-    out = here / "out"
+def test_what_is_no_plain_file_is_refused(user_folder, capsys, make, words):
+    out = user_folder / "out"
     put(out / "ledger.csv", make)
-    for asked in (["--resume", out], [here / "scene.toml", "--out", out, "--force"]):
-        assert refused(here, capsys, words, "run", *asked)
+    for arguments in (["--resume", out], [user_folder / "scene.toml", "--out", out, "--force"]):
+        assert is_refused(user_folder, capsys, words, "run", *arguments)
 
 
-def test_a_link_above_a_folder_is_followed(here):
-    (here / "data").mkdir()
-    (here / "runs").symlink_to(here / "data")
+def test_a_link_above_a_folder_is_followed(user_folder):
+    (user_folder / "data").mkdir()
+    (user_folder / "runs").symlink_to(user_folder / "data")
     for force in ([], ["--force"]):
-        assert status("run", here / "scene.toml", "--out", here / "runs" / "a", *force) == 0
-    assert (here / "data" / "a" / "results.json").is_file()
+        assert (
+            status("run", user_folder / "scene.toml", "--out", user_folder / "runs" / "a", *force)
+            == 0
+        )
+    assert (user_folder / "data" / "a" / "results.json").is_file()
 
 
-def test_a_link_in_an_empty_folder_is_refused(here, capsys):
-    (here / "new").mkdir()
-    (here / "new" / LOCK).symlink_to(here / "foreign" / "mine.txt")
-    asked = ("run", here / "scene.toml", "--out", here / "new")
-    assert refused(here, capsys, f"{LOCK} must be this folder's own", *asked)
+def test_a_link_in_an_empty_folder_is_refused(user_folder, capsys):
+    (user_folder / "new").mkdir()
+    (user_folder / "new" / LOCK).symlink_to(user_folder / "foreign" / "mine.txt")
+    arguments = ("run", user_folder / "scene.toml", "--out", user_folder / "new")
+    assert is_refused(user_folder, capsys, f"{LOCK} must be this folder's own", *arguments)
 
 
-def test_a_link_in_a_study_is_refused(here, capsys):
-    asked = ("study", here / "scene.toml", "--out", here / "s")
-    assert status(*asked) == 0
+def test_a_link_in_a_study_is_refused(user_folder, capsys):
+    arguments = ("study", user_folder / "scene.toml", "--out", user_folder / "s")
+    assert status(*arguments) == 0
     capsys.readouterr()
-    (run,) = (path for path in (here / "s").iterdir() if path.is_dir() and path.name.endswith("a"))
-    put(run, lambda place: place.symlink_to(here / "foreign"))
-    for how in ("--force", "--keep"):
-        assert refused(here, capsys, f"{run.name} must be this folder's own", *asked, how)
+    (run,) = (
+        path for path in (user_folder / "s").iterdir() if path.is_dir() and path.name.endswith("a")
+    )
+    put(run, lambda place: place.symlink_to(user_folder / "foreign"))
+    for option in ("--force", "--keep"):
+        assert is_refused(
+            user_folder, capsys, f"{run.name} must be this folder's own", *arguments, option
+        )

@@ -54,11 +54,11 @@ def test_every_view_has_walls_where_they_are(tmp_path, scene):
 
 def test_a_run_that_goes_on_has_the_same_walls(tmp_path, scene, monkeypatch):
     monkeypatch.setattr(snapshots, "remove", lambda paths: None)
-    first, again = tmp_path / "first", tmp_path / "again"
+    first, resumed = tmp_path / "first", tmp_path / "again"
     make_folder(scene("output.snapshots=0.03"), first)
-    done = simulate(scene("output.snapshots=0.03"), first)
-    shutil.copytree(first, again)
-    snapshot = snapshots.latest(again)
+    exit_status = simulate(scene("output.snapshots=0.03"), first)
+    shutil.copytree(first, resumed)
+    snapshot = snapshots.latest(resumed)
     assert 0 < snapshots.window_of(snapshot) < 100
-    assert simulate(scene("output.snapshots=0.03"), again, snapshot) == done
-    assert same(first, again)
+    assert simulate(scene("output.snapshots=0.03"), resumed, snapshot) == exit_status
+    assert same(first, resumed)

@@ -20,7 +20,7 @@ ODD = (
 
 
 @pytest.fixture(scope="module")
-def killed(tmp_path_factory):
+def killed_folder(tmp_path_factory):
     """The folder of a run that was killed when it had a snapshot."""
     folder = tmp_path_factory.mktemp("killed")
     path = write_scene(folder, "memory", 0.1, pong="pause = 3e-3")
@@ -28,71 +28,71 @@ def killed(tmp_path_factory):
     run.wait_until(lambda: snapshots.snapshots(run.folder))
     run.process.kill()
     run.wait()
-    for older in snapshots.snapshots(run.folder)[:-1]:
-        older.unlink()
+    for old_snapshot in snapshots.snapshots(run.folder)[:-1]:
+        old_snapshot.unlink()
     return run.folder
 
 
-def in_bytes(data, random):
+def damage_bytes(data, random):
     """Bits, cuts, blocks that never came to the disk, and bytes that do not belong there."""
-    place, changed = int(random.integers(len(data))), bytearray(data)
+    place, damaged = int(random.integers(len(data))), bytearray(data)
     match random.integers(4):
         case 0:
-            changed[place] ^= 1 << random.integers(8)
+            damaged[place] ^= 1 << random.integers(8)
         case 1:
-            del changed[place:]
+            del damaged[place:]
         case 2:
-            changed[place : place + 4096] = bytes(len(changed[place : place + 4096]))
+            damaged[place : place + 4096] = bytes(len(damaged[place : place + 4096]))
         case 3:
-            changed[place:place] = random.bytes(int(random.integers(1, 100)))
-    return bytes(changed)
+            damaged[place:place] = random.bytes(int(random.integers(1, 100)))
+    return bytes(damaged)
 
 
-def in_content(path, random):
-    """Another value, or none, in a place of the file, whose checksum is then made anew."""
+def change_content(path, random):
+    """Replace or delete one value in the file, and renew its checksum."""
     with h5py.File(path, "r+") as file:
         places = []
         file.visit(places.append)
         name = places[random.integers(len(places))]
-        odd, of_json = ODD[random.integers(len(ODD))], "json" in file[name].attrs
+        odd_value, of_json = ODD[random.integers(len(ODD))], "json" in file[name].attrs
         keys = file[name].attrs.get("keys")
         if keys is not None and random.random() < 0.5:
             file[name].attrs["keys"] = json.dumps(json.loads(keys)[::-1][:-1])
         else:
             del file[name]
             if random.random() < 0.7:
-                file[name] = odd
+                file[name] = odd_value
                 if of_json and random.random() < 0.8:
                     file[name].attrs["json"] = True
     seal(path)
 
 
 @pytest.mark.parametrize("count", [300, pytest.param(1500, marks=pytest.mark.full)])
-def test_a_snapshot_whose_bytes_were_changed_is_not_used(killed, tmp_path, count):
-    path = snapshots.latest(killed)
+def test_a_snapshot_whose_bytes_were_changed_is_not_used(killed_folder, tmp_path, count):
+    path = snapshots.latest(killed_folder)
     data, random = path.read_bytes(), np.random.default_rng(31)
-    changed = tmp_path / path.name
+    damaged_path = tmp_path / path.name
     for _ in range(count):
-        changed.write_bytes(other := in_bytes(data, random))
-        if other == data:
+        damaged_path.write_bytes(damaged := damage_bytes(data, random))
+        if damaged == data:
             continue
-        assert not is_sound(changed)
+        assert not is_sound(damaged_path)
         with pytest.raises(SceneError, match="is not as it was written: it was cut or changed"):
             snapshots.latest(tmp_path)
 
 
 @pytest.mark.parametrize("count", [3, pytest.param(500, marks=pytest.mark.full)])
 def test_a_snapshot_with_other_content_and_a_right_checksum_ends_in_order(
-    killed, tmp_path, capfd, count
+    killed_folder, tmp_path, capfd, count
 ):
-    """No accident makes such a file: what reads it says so, or the window that uses it fails."""
+    """No accident makes such a file: its reader refuses it, or the window that uses it fails."""
     random = np.random.default_rng(32)
     for number in range(count):
-        again = shutil.copytree(killed, tmp_path / f"again{number}")
-        in_content(snapshots.latest(again), random)
-        ended = status("run", "--resume", again)
-        said = capfd.readouterr()
-        assert ended in (0, 1, 2, 3), said.err
-        assert ended < 2 or "quintet: " in said.err
-        assert ended != 2 or "Traceback" not in said.err, said.err
-        shutil.rmtree(again)
+        copy = shutil.copytree(killed_folder, tmp_path / f"again{number}")
+        change_content(snapshots.latest(copy), random)
+        exit_status = status("run", "--resume", copy)
+        screen = capfd.readouterr()
+        assert exit_status in (0, 1, 2, 3), screen.err
+        assert exit_status < 2 or "quintet: " in screen.err
+        assert exit_status != 2 or "Traceback" not in screen.err, screen.err
+        shutil.rmtree(copy)

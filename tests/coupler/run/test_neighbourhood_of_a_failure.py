@@ -1,4 +1,4 @@
-"""What is around the item at which a component failed: in a file for ParaView, that is named."""
+"""The neighbourhood of the item at which a component failed is written to a file for ParaView."""
 
 import json
 
@@ -34,7 +34,7 @@ class Invalid(Toy):
 
 @pytest.fixture
 def failed(tmp_path, monkeypatch, capsys):
-    """Run a scene in which a point becomes invalid; return its folder, scene and what was said."""
+    """Run a scene in which a point becomes invalid; return its folder, scene and errors."""
 
     def run(*settings, nowhere=False):
         path = write_scene(tmp_path, end=0.1, ping="items = 400", pong="items = 400")
@@ -51,30 +51,37 @@ def failed(tmp_path, monkeypatch, capsys):
 
 
 def test_it_is_written_with_the_view_before_and_named(failed):
-    folder, _, said = failed("output.interval=0.02")
-    assert "ping failed in window 40: StepError: point 300 must be finite" in said
+    folder, _, message = failed("output.interval=0.02")
+    assert "ping failed in window 40: StepError: point 300 must be finite" in message
     text = "the 250 points nearest to it, at the last view and when it failed, are in ping.failure"
-    assert text in said
+    assert text in message
     assert text in json.loads((folder / "results.json").read_text())["fault"]["neighbourhood"]
     path = folder / "ping.failure.vtkhdf"
     assert np.allclose(vtkhdf_reader.times(path), [0.04, 0.04])
-    before, now = (vtkhdf_reader.read_step(path, k)[1] for k in (0, 1))
-    assert len(now["points"]) == len(before["points"]) == 250
-    assert 299.0 in now["heat"] and 301.0 in now["heat"] and 0.0 not in now["heat"]
+    last_view, failure_view = (vtkhdf_reader.read_step(path, k)[1] for k in (0, 1))
+    assert len(failure_view["points"]) == len(last_view["points"]) == 250
+    assert (
+        299.0 in failure_view["heat"]
+        and 301.0 in failure_view["heat"]
+        and 0.0 not in failure_view["heat"]
+    )
     assert view_files(folder) and path not in view_files(folder)
 
 
 def test_of_an_item_at_no_place_it_is_where_it_was(failed):
     folder, *_ = failed("output.interval=0.02", nowhere=True)
     path = folder / "ping.failure.vtkhdf"
-    before, now = (vtkhdf_reader.read_step(path, k)[1] for k in (0, 1))
-    assert 300.0 in before["heat"] and np.isnan(now["points"][now["heat"] == 300.0]).all()
-    assert 299.0 in now["heat"] and 0.0 not in now["heat"]
+    last_view, failure_view = (vtkhdf_reader.read_step(path, k)[1] for k in (0, 1))
+    assert (
+        300.0 in last_view["heat"]
+        and np.isnan(failure_view["points"][failure_view["heat"] == 300.0]).all()
+    )
+    assert 299.0 in failure_view["heat"] and 0.0 not in failure_view["heat"]
 
 
 def test_a_run_without_views_has_the_present_only(failed):
-    folder, _, said = failed()
-    assert "the 250 points nearest to it, when it failed, are in ping.failure.vtkhdf" in said
+    folder, _, message = failed()
+    assert "the 250 points nearest to it, when it failed, are in ping.failure.vtkhdf" in message
     assert len(vtkhdf_reader.times(folder / "ping.failure.vtkhdf")) == 1
 
 

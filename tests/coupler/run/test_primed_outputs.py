@@ -1,4 +1,4 @@
-"""What a component changes when it learns of its partners is part of the start of a run."""
+"""Changes that a component makes when it learns of its partners belong to the start of a run."""
 
 import json
 

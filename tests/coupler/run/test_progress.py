@@ -1,4 +1,4 @@
-"""A run says what it does from its first second on, and how long it will take."""
+"""A run reports its progress from its first second on, and the time it still needs."""
 
 import faulthandler
 import subprocess
@@ -26,10 +26,10 @@ def paced(readings, start=100.0):
 
 def test_time_left_follows_from_the_last_seconds_and_not_from_the_first_window():
     # 60 s of compilation, then 0.1 s for each window of 1 ms.
-    found = paced([(60.0 + 0.1 * k, Reading(k, 1e-3 * k)) for k in range(1, 101)])
-    assert found.left(1.8) == pytest.approx(170.0)
-    assert found.windows == pytest.approx(10.0)
-    assert time_left(found, 1.8) == "3 min left" and time_left(found, 0.3) == "20 s left"
+    pace = paced([(60.0 + 0.1 * k, Reading(k, 1e-3 * k)) for k in range(1, 101)])
+    assert pace.left(1.8) == pytest.approx(170.0)
+    assert pace.windows == pytest.approx(10.0)
+    assert time_left(pace, 1.8) == "3 min left" and time_left(pace, 0.3) == "20 s left"
 
 
 def test_what_became_slower_counts_after_a_while():
@@ -47,8 +47,8 @@ def test_nobody_tells_the_time_left_of_the_first_window():
 def test_who_computes_and_how_often_windows_are_repeated_is_told():
     begin = Reading(1, 1e-3, 0.0, {"water": 50.0, "cubes": 20.0}, 0)
     end = Reading(101, 0.101, 1e-16, {"water": 59.0, "cubes": 20.5}, 250)
-    said = details(end, paced([(0.0, begin), (10.0, end)]))
-    assert said[1:] == [
+    texts = details(end, paced([(0.0, begin), (10.0, end)]))
+    assert texts[1:] == [
         "10 windows/s",
         "water computes 90%",
         "cubes computes 5%",
@@ -67,12 +67,12 @@ def test_the_last_line_of_a_log_says_what_a_component_is_at(tmp_path):
 def test_neither_a_stack_nor_a_former_log_is_what_a_component_does(tmp_path):
     log = tmp_path / "water.log"
     log.write_text("water: finished\n")
-    former = log.stat().st_size
-    assert last_line(log, former) == "starting"
+    former_size = log.stat().st_size
+    assert last_line(log, former_size) == "starting"
     with open(log, "a") as file:
         file.write("building\n")
         faulthandler.dump_traceback(file)
-    assert last_line(log, former) == "building"
+    assert last_line(log, former_size) == "building"
 
 
 def test_a_run_without_links_has_no_residual():
@@ -90,12 +90,12 @@ def test_a_reader_that_leaves_silences_the_screen_and_the_run_goes_on(tmp_path):
 
 
 def test_notices_are_heard_by_who_listens_and_by_nobody_else():
-    heard = []
-    listen(heard.append)
+    notices = []
+    listen(notices.append)
     notice("compiling step")
     listen(None)
     notice("building")
-    assert heard == ["compiling step"]
+    assert notices == ["compiling step"]
 
 
 def test_the_first_word_of_a_run_names_what_runs(tmp_path, capsys):
@@ -103,9 +103,9 @@ def test_the_first_word_of_a_run_names_what_runs(tmp_path, capsys):
     with pytest.raises(SystemExit):
         main(["run", str(path), "--out", str(tmp_path / "out")])
     lines = capsys.readouterr().out.splitlines()
-    said = [line for line in lines if "is code: importing" not in line]  # once in a process
-    assert said[0].startswith("toy: ping (toys:Toy), pong (toys:Toy) over memory, into ")
-    assert any(line.startswith("t = 0.001 of 0.005 s, window 1,") for line in said)
+    messages = [line for line in lines if "is code: importing" not in line]  # once in a process
+    assert messages[0].startswith("toy: ping (toys:Toy), pong (toys:Toy) over memory, into ")
+    assert any(line.startswith("t = 0.001 of 0.005 s, window 1,") for line in messages)
 
 
 SLOW = """
@@ -139,35 +139,35 @@ def test_what_takes_long_before_the_first_window_is_on_the_screen(tmp_path, tran
     assert run.wait() == 0, run.err
     assert "reading the mesh" in run.out.split("window 1,")[0]
     timing = run.results["timing"]
-    both = 2 if transport == "memory" else 1  # processes of their own prepare side by side
+    builds = 2 if transport == "memory" else 1  # processes of their own prepare side by side
     assert 1.0 <= timing["build"] < 3.0, "of both"
     for times in timing["components"].values():
         assert times["build"] >= 0.5 and times["wait"] <= timing["wall"] - 3.5
-    assert 3.0 * both <= timing["compile"] and timing["wall"] >= 3.0 * both
+    assert 3.0 * builds <= timing["compile"] and timing["wall"] >= 3.0 * builds
 
 
 @pytest.mark.zenoh
 def test_a_component_that_joins_by_hand_is_told_how(tmp_path):
     path = write_scene(tmp_path, "zenoh", 0.02)
     run = Started(path, "--elsewhere", "pong", "--set", "window=2e-3")
-    lines, found = [], threading.Event()
+    lines, awaited = [], threading.Event()
 
     def read():
         for line in run.process.stdout:
             lines.append(line)
             if "awaited" in line:
-                found.set()
+                awaited.set()
 
     reader = threading.Thread(target=read)
     reader.start()
     try:
-        assert found.wait(30.0)
+        assert awaited.wait(30.0)
         command = next(line for line in lines if "awaited" in line).partition(": ")[2].split()
         assert command[:2] == ["quintet", "join"] and "window=2e-3" in command
-        began = time.monotonic()
-        joined = [sys.executable, "-m", "quintet.coupler.cli", *command[1:]]
-        subprocess.run(joined, check=True, cwd=tmp_path, capture_output=True, timeout=60)
-        while running(run.process.pid) and time.monotonic() - began < 60.0:
+        start = time.monotonic()
+        join_command = [sys.executable, "-m", "quintet.coupler.cli", *command[1:]]
+        subprocess.run(join_command, check=True, cwd=tmp_path, capture_output=True, timeout=60)
+        while running(run.process.pid) and time.monotonic() - start < 60.0:
             time.sleep(0.05)
     finally:
         run.end()

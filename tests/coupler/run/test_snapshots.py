@@ -21,56 +21,56 @@ OVER = [pytest.param("zenoh", marks=pytest.mark.zenoh), pytest.param("mpi", mark
 
 
 def status(*arguments):
-    with pytest.raises(SystemExit) as ended:
-        main([str(one) for one in arguments])
-    return ended.value.code
+    with pytest.raises(SystemExit) as exit_info:
+        main([str(argument) for argument in arguments])
+    return exit_info.value.code
 
 
 @pytest.fixture
-def gone_on(tmp_path, monkeypatch):
+def run_and_resume(tmp_path, monkeypatch):
     """Run a scene to its end with snapshots kept; once more from the last of them."""
 
     def run(scene, *settings):
         monkeypatch.setattr(snapshots, "remove", lambda paths: None)
-        made = load(str(scene), settings=settings, transport="memory")
-        first, again = tmp_path / "first", tmp_path / "again"
-        make_folder(made, first)
-        done = simulate(made, first)
-        shutil.copytree(first, again)
-        snapshot = snapshots.latest(again)
+        loaded_scene = load(str(scene), settings=settings, transport="memory")
+        first, resumed = tmp_path / "first", tmp_path / "again"
+        make_folder(loaded_scene, first)
+        exit_status = simulate(loaded_scene, first)
+        shutil.copytree(first, resumed)
+        snapshot = snapshots.latest(resumed)
         assert 0 < snapshots.window_of(snapshot)
-        assert simulate(load(str(scene), settings=settings), again, snapshot) == done
-        return first, again, snapshots.window_of(snapshot)
+        assert simulate(load(str(scene), settings=settings), resumed, snapshot) == exit_status
+        return first, resumed, snapshots.window_of(snapshot)
 
     return run
 
 
 @pytest.mark.parametrize("scheme", ["serial", "parallel"])
-def test_toys_go_on_from_a_snapshot_with_the_same_bits(tmp_path, gone_on, scheme):
+def test_toys_go_on_from_a_snapshot_with_the_same_bits(tmp_path, run_and_resume, scheme):
     path = write_scene(tmp_path, end=0.1, ping="substeps = 7", pong="substeps = 3")
     output = ("output.snapshots=0.03", "output.totals=0.004", f'scheme="{scheme}"')
-    first, again, window = gone_on(path, *output)
-    assert window == 90 and same(first, again)
+    first, resumed, window = run_and_resume(path, *output)
+    assert window == 90 and same(first, resumed)
 
 
-def test_an_iterated_run_goes_on_from_a_snapshot_with_the_same_bits(gone_on):
-    first, again, window = gone_on("two_springs", "output.snapshots=0.08", "end=0.1")
-    assert window == 40 and same(first, again)
+def test_an_iterated_run_goes_on_from_a_snapshot_with_the_same_bits(run_and_resume):
+    first, resumed, window = run_and_resume("two_springs", "output.snapshots=0.08", "end=0.1")
+    assert window == 40 and same(first, resumed)
 
 
-def test_water_and_a_body_go_on_from_a_snapshot_with_the_same_bits(gone_on):
+def test_water_and_a_body_go_on_from_a_snapshot_with_the_same_bits(run_and_resume):
     output = ("end=0.03", "output.interval=0.01", "output.snapshots=0.012")
-    first, again, window = gone_on(SMALL_DAM, *output)
-    assert window == 24 and same(first, again)
-    assert len(vtkhdf_reader.times(again / "water.vtkhdf")) == 4
+    first, resumed, window = run_and_resume(SMALL_DAM, *output)
+    assert window == 24 and same(first, resumed)
+    assert len(vtkhdf_reader.times(resumed / "water.vtkhdf")) == 4
 
 
 @pytest.mark.full
-def test_a_ball_on_glued_particles_goes_on_from_a_snapshot_with_the_same_bits(gone_on):
+def test_a_ball_on_glued_particles_goes_on_from_a_snapshot_with_the_same_bits(run_and_resume):
     path = SMALL_DAM.parents[2] / "scenarios/al_ball_7400_glued/scene.toml"
-    part = ("output.snapshots=3e-7", "end=5e-7")
-    first, again, window = gone_on(path, *part)
-    assert 0 < window and same(first, again)
+    settings = ("output.snapshots=3e-7", "end=5e-7")
+    first, resumed, window = run_and_resume(path, *settings)
+    assert 0 < window and same(first, resumed)
 
 
 @pytest.mark.parametrize(
@@ -101,20 +101,20 @@ def test_a_run_whose_component_was_killed_goes_on_from_its_last_snapshot(tmp_pat
     assert run.wait() == 3
     assert run.results["status"] == "failed" and "--resume" in run.results["resume"]
     assert len(snapshots.snapshots(run.folder)) == snapshots.KEPT
-    # As it was asked for, or named again; over any transport.
-    again = ("run", path, "--set", "output.snapshots=0.01", "--transport", "memory")
-    assert status(*again, "--resume", run.folder) == 0
-    assert status(*again, "--out", tmp_path / "undisturbed") == 0
+    # With the scene as it began; over any transport.
+    arguments = ("run", path, "--set", "output.snapshots=0.01", "--transport", "memory")
+    assert status(*arguments, "--resume", run.folder) == 0
+    assert status(*arguments, "--out", tmp_path / "undisturbed") == 0
     assert same(tmp_path / "undisturbed", run.folder)
 
 
-@pytest.mark.parametrize(("pause", "kept"), [(0.4, True), (0.0, False)])
-def test_long_windows_are_kept_often(tmp_path, monkeypatch, pause, kept):
+@pytest.mark.parametrize(("pause", "has_snapshot"), [(0.4, True), (0.0, False)])
+def test_long_windows_are_kept_often(tmp_path, monkeypatch, pause, has_snapshot):
     """They may not end in time when a run is interrupted."""
     monkeypatch.setattr(output, "OFTEN", 0.0)
     path = write_scene(tmp_path, end=1.0, pong=f"pause = {pause}\nfails_at = 3")
     assert status("run", path, "--out", tmp_path / "out") == 3
-    assert bool(snapshots.snapshots(tmp_path / "out")) == kept
+    assert bool(snapshots.snapshots(tmp_path / "out")) == has_snapshot
 
 
 @pytest.mark.zenoh
@@ -145,8 +145,8 @@ def test_what_cannot_go_on_is_refused(tmp_path, capsys):
 
 
 @pytest.fixture(scope="module")
-def killed(tmp_path_factory):
-    """A run that was killed when it had two snapshots, and one that was not."""
+def run_folders(tmp_path_factory):
+    """Folders of a run that was killed when it had two snapshots, and of a whole run."""
     folder = tmp_path_factory.mktemp("killed")
     path = write_scene(folder, "memory", 0.2, pong="pause = 3e-3")
     run = Started(path, "--set", "output.snapshots=0.02")
@@ -173,33 +173,33 @@ DAMAGES = {
 
 @pytest.mark.parametrize("damage", DAMAGES)
 def test_a_snapshot_that_was_changed_is_named_and_the_one_before_is_used(
-    tmp_path, killed, damage, capfd
+    tmp_path, run_folders, damage, capfd
 ):
-    again, whole = tmp_path / "again", killed[1]
-    shutil.copytree(killed[0], again)
-    before, last = snapshots.snapshots(again)
+    copy, whole = tmp_path / "again", run_folders[1]
+    shutil.copytree(run_folders[0], copy)
+    previous, last = snapshots.snapshots(copy)
     DAMAGES[damage](last)
-    assert status("run", "--resume", again) == 0
+    assert status("run", "--resume", copy) == 0
     assert (
         f"quintet: {last.name} is not as it was written: it was cut or changed. The run goes on "
-        f"from {before.name}.\n"
+        f"from {previous.name}.\n"
     ) in capfd.readouterr().err
-    assert same(whole, again) and not snapshots.snapshots(again)
+    assert same(whole, copy) and not snapshots.snapshots(copy)
 
 
-def test_a_run_whose_snapshots_were_all_changed_is_refused(tmp_path, killed, capsys):
-    again = tmp_path / "again"
-    shutil.copytree(killed[0], again)
-    for path in snapshots.snapshots(again):
+def test_a_run_whose_snapshots_were_all_changed_is_refused(tmp_path, run_folders, capsys):
+    copy = tmp_path / "again"
+    shutil.copytree(run_folders[0], copy)
+    for path in snapshots.snapshots(copy):
         flip_a_bit(path)
-    assert status("run", "--resume", again) == 2
-    said = capsys.readouterr().err
-    assert said.count("is not as it was written: it was cut or changed.") == snapshots.KEPT
+    assert status("run", "--resume", copy) == 2
+    message = capsys.readouterr().err
+    assert message.count("is not as it was written: it was cut or changed.") == snapshots.KEPT
 
 
-def test_a_file_that_is_too_short_for_the_snapshot_is_refused(tmp_path, killed, capsys):
-    again = tmp_path / "again"
-    shutil.copytree(killed[0], again)
-    os.truncate(again / "ledger.csv", 10)
-    assert status("run", "--resume", again) == 2
+def test_a_file_that_is_too_short_for_the_snapshot_is_refused(tmp_path, run_folders, capsys):
+    copy = tmp_path / "again"
+    shutil.copytree(run_folders[0], copy)
+    os.truncate(copy / "ledger.csv", 10)
+    assert status("run", "--resume", copy) == 2
     assert "bytes to go on; found 10. Run the scene again." in capsys.readouterr().err

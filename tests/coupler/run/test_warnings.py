@@ -54,9 +54,9 @@ def test_a_warning_is_told_once_and_ends_the_run_with_status_1(tmp_path, capfd, 
     assert (warning["source"], warning["subject"]) == ("component spring", "range")
     assert 0.18 < warning["time"] < 0.3, "raised as the spring passed -0.3 m, cos(10 t)"
     assert warning["text"].endswith("Shorten it.")
-    printed = capfd.readouterr()
-    assert printed.err.count("warning of component spring: it went to -0.") == 1
-    assert "Warning of component spring: it went to" in printed.out
+    screen = capfd.readouterr()
+    assert screen.err.count("warning of component spring: it went to -0.") == 1
+    assert "Warning of component spring: it went to" in screen.out
     assert _results(tmp_path / "out")["status"] == "done"
 
 
@@ -85,8 +85,8 @@ def test_a_warning_outlives_a_resume(tmp_path, monkeypatch):
     """The spring swings back long before the end: the run that goes on does not warn again."""
     monkeypatch.setattr(snapshots, "remove", lambda paths: None)
     path = _scene(tmp_path, end=0.6, begin=0.6)
-    out, again = tmp_path / "out", tmp_path / "again"
+    out, resumed = tmp_path / "out", tmp_path / "again"
     assert command("run", path, "--out", out, "--set", "output.snapshots=0.59") == 1
-    shutil.copytree(out, again)
-    assert command("run", "--resume", again) == 1
-    assert _results(again)["warnings"] == _results(out)["warnings"] != []
+    shutil.copytree(out, resumed)
+    assert command("run", "--resume", resumed) == 1
+    assert _results(resumed)["warnings"] == _results(out)["warnings"] != []
