@@ -40,7 +40,7 @@ class Mutant:
 
 def mutants(folder: Path, count: int, seed: int):
     """Write mutated scenes, in turn of every shipped one; the same for the same seed."""
-    chosen = random.Random(seed)
+    generator = random.Random(seed)
     scenes = library()
     copies = {name: folder / name for name in scenes}
     for name, path in scenes.items():
@@ -49,104 +49,119 @@ def mutants(folder: Path, count: int, seed: int):
         name = sorted(scenes)[number % len(scenes)]
         text = scenes[name].read_text(encoding="utf-8")
         path = copies[name] / f"scene_{number}.toml"
-        way = chosen.random()
-        if way < 0.1:
-            path.write_bytes(spoil(text, chosen))
+        draw = generator.random()
+        if draw < 0.1:
+            path.write_bytes(spoil(text, generator))
         else:
             table = tomllib.loads(text)
-            for _ in range(chosen.choice((1, 1, 1, 2, 3))):
-                mutate(table, chosen)
+            for _ in range(generator.choice((1, 1, 1, 2, 3))):
+                mutate(table, generator)
             path.write_text(tomli_w.dumps(table), encoding="utf-8")
-        yield Mutant(f"{name} {number}", path, arguments(tomllib.loads(text), chosen))
+        yield Mutant(f"{name} {number}", path, arguments(tomllib.loads(text), generator))
 
 
-def spoil(text: str, chosen: random.Random) -> bytes:
+def spoil(text: str, generator: random.Random) -> bytes:
     """Change a scene as text: bytes, lines, its end."""
-    raw = bytearray(text.encode())
-    place = chosen.randrange(len(raw))
-    match chosen.randrange(4):
+    data = bytearray(text.encode())
+    place = generator.randrange(len(data))
+    match generator.randrange(4):
         case 0:
-            raw[place] = chosen.randrange(256)
+            data[place] = generator.randrange(256)
         case 1:
-            del raw[place:]
+            del data[place:]
         case 2:
-            del raw[place : place + chosen.randrange(1, 40)]
+            del data[place : place + generator.randrange(1, 40)]
         case _:
-            raw[place:place] = chosen.choice(
+            data[place:place] = generator.choice(
                 (b"[[", b"]]", b'"', b"=", b"\xff", b"0x", b"[" * 9999)
             )
-    return bytes(raw)
+    return bytes(data)
 
 
-def arguments(table: dict, chosen: random.Random) -> tuple[str, ...]:
-    """Overrides of a few of them."""
-    way = chosen.random()
-    if way < 0.06:
-        return ("--set", chosen.choice(SETTINGS))
-    if way < 0.1:
+def arguments(table: dict, generator: random.Random) -> tuple[str, ...]:
+    """Options that override a few values of a scene."""
+    draw = generator.random()
+    if draw < 0.06:
+        return ("--set", generator.choice(SETTINGS))
+    if draw < 0.1:
         kinds = [*known_kinds(), *table["components"], "replay@nowhere", "replay@.", ":", "os:path"]
-        swapped = chosen.choice([*table["components"], "nobody", ""])
-        return ("--swap", f"{swapped}={chosen.choice(kinds)}")
-    if way < 0.14:
-        return ("--preset", chosen.choice([*table.get("presets", {}), "quik"]))
+        name = generator.choice([*table["components"], "nobody", ""])
+        return ("--swap", f"{name}={generator.choice(kinds)}")
+    if draw < 0.14:
+        return ("--preset", generator.choice([*table.get("presets", {}), "quik"]))
     return ()
 
 
-def places(at, path=()):
+def places(container, path=()):
     """All places in nested tables and lists: their container and key."""
-    pairs = at.items() if isinstance(at, dict) else enumerate(at) if isinstance(at, list) else ()
+    pairs = (
+        container.items()
+        if isinstance(container, dict)
+        else enumerate(container)
+        if isinstance(container, list)
+        else ()
+    )
     for key, value in list(pairs):
-        yield at, key
+        yield container, key
         yield from places(value, (*path, key))
 
 
-def mutate(table: dict, chosen: random.Random) -> None:
+def mutate(table: dict, generator: random.Random) -> None:
     """Change one place of a scene."""
-    found = list(places(table))
-    if not found:
+    locations = list(places(table))
+    if not locations:
         return
-    at, key = chosen.choice(found)
-    value = at[key]
+    container, key = generator.choice(locations)
+    value = container[key]
     is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
-    match chosen.randrange(10):
+    match generator.randrange(10):
         case 0 | 1 if is_number:
-            at[key] = chosen.choice(NUMBERS)
+            container[key] = generator.choice(NUMBERS)
         case 2 | 3 if is_number:
-            at[key] = float(value) * 10.0 ** chosen.uniform(-40.0, 40.0)
+            container[key] = float(value) * 10.0 ** generator.uniform(-40.0, 40.0)
         case 4 if is_number:
-            at[key] = -value
+            container[key] = -value
         case 0 | 5:
-            at[key] = chosen.choice((*NUMBERS, *OTHERS))
+            container[key] = generator.choice((*NUMBERS, *OTHERS))
         case 1 | 6:
-            del at[key]
-        case 2 if isinstance(at, dict):
-            at[misspelt(key, chosen)] = at.pop(key)
+            del container[key]
+        case 2 if isinstance(container, dict):
+            container[misspelt(key, generator)] = container.pop(key)
         case 3 if isinstance(value, list) and value:
-            more = value * chosen.choice((2, 40))
-            at[key] = chosen.choice((more, value[1:], value[:1], [*value, chosen.choice(OTHERS)]))
+            repeated = value * generator.choice((2, 40))
+            container[key] = generator.choice(
+                (repeated, value[1:], value[:1], [*value, generator.choice(OTHERS)])
+            )
         case 4 if isinstance(value, str):
-            words = [one for a, k in found if isinstance(one := a[k], str)]
-            at[key] = chosen.choice((*words, *known_kinds(), misspelt(value, chosen)))
+            texts = [text for a, k in locations if isinstance(text := a[k], str)]
+            container[key] = generator.choice((*texts, *known_kinds(), misspelt(value, generator)))
         case 7:
-            at[key] = chosen.choice(([value], {"x": value}, [[value], value]))
-        case 8 if isinstance(at, dict):
-            at[chosen.choice(("extra", "kind", "name", "position", "x" * 300))] = value
+            container[key] = generator.choice(([value], {"x": value}, [[value], value]))
+        case 8 if isinstance(container, dict):
+            container[generator.choice(("extra", "kind", "name", "position", "x" * 300))] = value
         case _:
-            other, place = chosen.choice(found)
-            if place in other if isinstance(other, dict) else place < len(other):
-                at[key], other[place] = plain(other[place]), plain(value)
+            other_container, place = generator.choice(locations)
+            if (
+                place in other_container
+                if isinstance(other_container, dict)
+                else place < len(other_container)
+            ):
+                container[key], other_container[place] = (
+                    copy_of(other_container[place]),
+                    copy_of(value),
+                )
 
 
-def plain(value):
+def copy_of(value):
     """Copy of a value: swapped into itself it would have no end."""
     if isinstance(value, dict):
-        return {key: plain(one) for key, one in value.items()}
-    return [plain(one) for one in value] if isinstance(value, list) else value
+        return {key: copy_of(entry) for key, entry in value.items()}
+    return [copy_of(entry) for entry in value] if isinstance(value, list) else value
 
 
-def misspelt(word: str, chosen: random.Random) -> str:
+def misspelt(word: str, generator: random.Random) -> str:
     """A word with a letter changed, or doubled."""
     if not word:
         return "x"
-    place = chosen.randrange(len(word))
-    return word[:place] + chosen.choice(("x", "", word[place] * 2, ".", " ")) + word[place + 1 :]
+    place = generator.randrange(len(word))
+    return word[:place] + generator.choice(("x", "", word[place] * 2, ".", " ")) + word[place + 1 :]

@@ -1,4 +1,4 @@
-"""A component computes where its scene says, or says why it cannot."""
+"""A component computes on the device of its scene, or gives the reason why it cannot."""
 
 import importlib.util
 import json
@@ -18,10 +18,10 @@ from quintet.interfaces.manifest import find
 from quintet.interfaces.serving.orders import check_order
 
 
-def scene(name, component, device, **more):
+def scene(name, component, device, **keys):
     key = f"components.{component}"
-    given = {f"{key}.device": device, **{f"{key}.{k}": v for k, v in more.items()}}
-    return load(name, preset="quick", settings=[f"{k}={v!r}" for k, v in given.items()])
+    settings = {f"{key}.device": device, **{f"{key}.{k}": v for k, v in keys.items()}}
+    return load(name, preset="quick", settings=[f"{k}={v!r}" for k, v in settings.items()])
 
 
 def test_the_device_of_a_scene_goes_to_its_component():
@@ -40,10 +40,10 @@ WRONG = [
 ]
 
 
-@pytest.mark.parametrize(("name", "component", "device", "more", "words"), WRONG)
-def test_a_device_that_a_component_cannot_use_is_refused(name, component, device, more, words):
+@pytest.mark.parametrize(("name", "component", "device", "keys", "words"), WRONG)
+def test_a_device_that_a_component_cannot_use_is_refused(name, component, device, keys, words):
     with pytest.raises(SceneError, match=words):
-        scene(name, component, device, **more)
+        scene(name, component, device, **keys)
 
 
 def test_a_kind_without_devices_refuses_them_as_it_is_loaded():
@@ -60,9 +60,9 @@ def test_an_order_names_its_device():
 def test_a_missing_library_says_how_to_install_it(monkeypatch, capsys):
     monkeypatch.setattr(libraries, "find_spec", lambda name: None)
     assert listing.main() == 2
-    said = capsys.readouterr().err
-    assert "an OpenCL device needs the library pyopencl; it is not installed" in said
-    assert "pip install 'quintet[opencl]'" in said
+    message = capsys.readouterr().err
+    assert "an OpenCL device needs the library pyopencl; it is not installed" in message
+    assert "pip install 'quintet[opencl]'" in message
 
 
 def test_a_machine_without_drivers_says_what_to_install(monkeypatch, capsys):
@@ -70,22 +70,22 @@ def test_a_machine_without_drivers_says_what_to_install(monkeypatch, capsys):
     assert listing.main() == 2
     assert "No OpenCL device was found. Install the driver of yours" in capsys.readouterr().err
     monkeypatch.setattr("quintet.components.shared.opencl.devices.devices", lambda: [])
-    with pytest.raises(SceneError) as caught:
+    with pytest.raises(SceneError) as error_info:
         device_of("opencl")
-    assert NO_DEVICE in str(caught.value)
+    assert NO_DEVICE in str(error_info.value)
 
 
 @pytest.mark.skipif(not importlib.util.find_spec("pyopencl"), reason="needs pyopencl")
 def test_devices_are_listed_with_memory_precision_and_bandwidth(monkeypatch, capsys):
     monkeypatch.setattr(listing, "bandwidth", lambda device: 12.34e9)
     assert listing.main() == 0
-    said = capsys.readouterr().out
-    assert said.startswith("opencl:0  ")
+    output = capsys.readouterr().out
+    assert output.startswith("opencl:0  ")
     assert listing.main(["--json"]) == 0
     first = json.loads(capsys.readouterr().out)[0]
     assert first.keys() == {"device", "name", "units", "memory", "doubles", "bandwidth"}
     assert first["device"] == "opencl:0" and first["bandwidth"] == 12.34e9
-    assert "GiB" in said and "double precision" in said and "copies 12.3 GB/s" in said
+    assert "GiB" in output and "double precision" in output and "copies 12.3 GB/s" in output
 
 
 @pytest.mark.skipif(not importlib.util.find_spec("pyopencl"), reason="needs pyopencl")
@@ -108,8 +108,8 @@ def test_check_refuses_what_the_run_on_a_device_would():
 
 @pytest.mark.skipif(not importlib.util.find_spec("pyopencl"), reason="needs pyopencl")
 def test_a_device_that_fails_does_not_hide_the_others(monkeypatch, capsys):
-    (first, *_) = listing.devices()
-    monkeypatch.setattr(listing, "devices", lambda: [first, replace(first, number=7)])
+    (first_device, *_) = listing.devices()
+    monkeypatch.setattr(listing, "devices", lambda: [first_device, replace(first_device, number=7)])
 
     def bandwidth_of(device):
         if device.number != 7:
@@ -118,8 +118,8 @@ def test_a_device_that_fails_does_not_hide_the_others(monkeypatch, capsys):
 
     monkeypatch.setattr(listing, "bandwidth", bandwidth_of)
     assert listing.main() == 0
-    said = capsys.readouterr()
-    assert "opencl:0 cannot be used: " in said.err and said.out.startswith("opencl:7  ")
+    screen = capsys.readouterr()
+    assert "opencl:0 cannot be used: " in screen.err and screen.out.startswith("opencl:7  ")
 
 
 @pytest.mark.skipif(not importlib.util.find_spec("pyopencl"), reason="needs pyopencl")
@@ -146,7 +146,9 @@ def test_devices_are_tried_only_where_there_is_one(monkeypatch):
     manifest = find("sph_fluid")
     assert any(case.device == "opencl" for case in manifest.cases()) == is_any_there()
     monkeypatch.setattr("quintet.components.shared.opencl.devices.devices", lambda: [])
-    assert {each.device for each in (*manifest.cases(), *manifest.conform_cases())} == {"cpu"}
+    assert {
+        manifest_case.device for manifest_case in (*manifest.cases(), *manifest.conform_cases())
+    } == {"cpu"}
 
 
 def test_reading_a_scene_loads_no_opencl():

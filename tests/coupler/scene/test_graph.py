@@ -29,17 +29,19 @@ def test_a_box_for_each_component_and_a_line_for_each_way_of_a_link():
 @pytest.mark.parametrize("name", library())
 def test_all_components_ports_and_links_are_drawn(name):
     scene = load(name)
-    drawn, lines = drawing(scene), drawing(scene).splitlines()
-    for one in scene.components.values():
-        assert f"┌ {one.name}: {one.kind} " in drawn
-    told = [("takes", port) for one in scene.components.values() for port in one.takes]
-    told += [("gives", port) for one in scene.components.values() for port in one.gives]
-    rows = re.findall(r"^│ (takes|gives) (\w+) ", drawn, re.MULTILINE)
-    assert sorted(rows) == sorted((way, port.name) for way, port in told)
-    found = list(edges(scene))
-    for one in found:
-        assert f"{one.link}: {one.giver}.{one.giving_port} → {one.taker}.{one.taking_port}" in lines
-    assert drawn.count("◄") == len({(one.taker, one.taking_port) for one in found})
+    picture, lines = drawing(scene), drawing(scene).splitlines()
+    components = scene.components.values()
+    for component in components:
+        assert f"┌ {component.name}: {component.kind} " in picture
+    ports = [("takes", port) for component in components for port in component.takes]
+    ports += [("gives", port) for component in components for port in component.gives]
+    rows = re.findall(r"^│ (takes|gives) (\w+) ", picture, re.MULTILINE)
+    assert sorted(rows) == sorted((way, port.name) for way, port in ports)
+    links = list(edges(scene))
+    for link in links:
+        giver, taker = f"{link.giver}.{link.giving_port}", f"{link.taker}.{link.taking_port}"
+        assert f"{link.link}: {giver} → {taker}" in lines
+    assert picture.count("◄") == len({(link.taker, link.taking_port) for link in links})
 
 
 def follow(lines, row, column):
@@ -47,30 +49,30 @@ def follow(lines, row, column):
     ways = {"─": "lr", "│": "ud", "┐": "ld", "┘": "lu", "┤": "udl", "┼": "udlr", "┬": "ldr",
             "┴": "lur", "◄": "r"}  # fmt: skip
     steps = {"l": (0, -1, "r"), "r": (0, 1, "l"), "u": (-1, 0, "d"), "d": (1, 0, "u")}
-    seen, queue, ends = set(), [(row, column, "l")], set()
+    visited, queue, ends = set(), [(row, column, "l")], set()
     while queue:
-        at = queue.pop()
-        if at in seen:
+        position = queue.pop()
+        if position in visited:
             continue
-        seen.add(at)
-        y, x, came = at
+        visited.add(position)
+        y, x, side = position
         sign = lines[y][x] if x < len(lines[y]) else " "
-        assert came in ways[sign] or sign == "◄", (y, x, sign)
+        assert side in ways[sign] or sign == "◄", (y, x, sign)
         if sign == "◄":
             ends.add(y)
             continue
         # Lines that cross go straight on.
-        onward = {"l": "r", "r": "l", "u": "d", "d": "u"}[came] if sign == "┼" else ways[sign]
-        queue += [(y + steps[w][0], x + steps[w][1], steps[w][2]) for w in onward if w != came]
+        onward = {"l": "r", "r": "l", "u": "d", "d": "u"}[side] if sign == "┼" else ways[sign]
+        queue += [(y + steps[w][0], x + steps[w][1], steps[w][2]) for w in onward if w != side]
     return ends
 
 
 def test_lines_lead_from_port_to_port():
     scene = load("dam_break_cubes")
     lines = drawing(scene).splitlines()
-    for name, taken in (("gives motion", "takes surface"), ("gives surface_load", "takes load")):
-        row = next(n for n, line in enumerate(lines) if name in line)
-        end = next(n for n, line in enumerate(lines) if re.search(rf"{taken} ", line))
+    for name, target in (("gives motion", "takes surface"), ("gives surface_load", "takes load")):
+        row = next(number for number, line in enumerate(lines) if name in line)
+        end = next(number for number, line in enumerate(lines) if re.search(rf"{target} ", line))
         assert follow(lines, row, len("┌ cubes: dem_bodies ─┐")) >= {end}
 
 
@@ -93,8 +95,10 @@ def test_mermaid_has_a_node_for_each_component_and_an_arrow_for_each_way(tmp_pat
     ]
 
 
-@pytest.mark.parametrize(("option", "first"), [("--graph", "┌ lower"), ("--mermaid", "flowchart")])
-def test_check_draws_instead_of_the_plan(capsys, option, first):
-    with pytest.raises(SystemExit) as ended:
+@pytest.mark.parametrize(
+    ("option", "beginning"), [("--graph", "┌ lower"), ("--mermaid", "flowchart")]
+)
+def test_check_draws_instead_of_the_plan(capsys, option, beginning):
+    with pytest.raises(SystemExit) as exit_info:
         main(["check", "two_springs", option])
-    assert ended.value.code == 0 and capsys.readouterr().out.startswith(first)
+    assert exit_info.value.code == 0 and capsys.readouterr().out.startswith(beginning)

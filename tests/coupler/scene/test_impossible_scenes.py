@@ -1,4 +1,4 @@
-"""What cannot be run is told as a scene is checked: status 2, and one sentence that says all."""
+"""The check of a scene refuses an impossible run: status 2, and one complete sentence."""
 
 import platform
 import shutil
@@ -15,12 +15,12 @@ HUGE = "must be below 1e+30 in size, in SI units; found"
 BODY, CUBE = "components.spheres.bodies.0", "components.cube.bodies.0"
 
 
-def at(body, lowest, highest):
+def box_settings(body, lowest, highest):
     """Settings that put a box elsewhere."""
     return ["--set", f"{body}.lowest={lowest}", "--set", f"{body}.highest={highest}"]
 
 
-CUBE_IN_WATER = at(CUBE, "[0.15,0.15,0.125]", "[0.3,0.3,0.275]")
+CUBE_IN_WATER = box_settings(CUBE, "[0.15,0.15,0.125]", "[0.3,0.3,0.275]")
 CASES = {
     "components that are none": (
         ["two_springs", "--set", "components=5"],
@@ -100,14 +100,14 @@ CASES = {
         "components must fit into this machine's memory of ",
     ),
 }  # fmt: skip
-# What the components find as they are joined, before the first window.
+# Mistakes that components find when they are joined, before the first window.
 MISPLACED = {
     "in the water": (
         ["floating_cube", *CUBE_IN_WATER],
         "components.water: body 0 must begin outside the water; its sample at (",
     ),
     "outside the tank": (
-        ["floating_cube", *at(CUBE, "[0.45,0.15,0.325]", "[0.6,0.3,0.475]")],
+        ["floating_cube", *box_settings(CUBE, "[0.45,0.15,0.325]", "[0.6,0.3,0.475]")],
         "m beyond face x+. Move it, or open that face.",
     ),
     "a square in the water": (
@@ -115,7 +115,7 @@ MISPLACED = {
         "components.water: body 0 must begin outside the water; its sample at (",
     ),
     "thinner than the spacing": (
-        ["floating_cube", *at(CUBE, "[0.2,0.2,0.3]", "[0.21,0.21,0.31]")],
+        ["floating_cube", *box_settings(CUBE, "[0.2,0.2,0.3]", "[0.21,0.21,0.31]")],
         "components.cube: a body must be at least ",
     ),
     "in a slab of another thickness": (
@@ -138,11 +138,11 @@ def nothing_starts(monkeypatch, tmp_path):
     monkeypatch.chdir(tmp_path)
 
 
-def refused(capsys, *arguments):
+def refusal(capsys, *arguments):
     """The one sentence of a command that ends with status 2."""
-    with pytest.raises(SystemExit) as ended:
+    with pytest.raises(SystemExit) as exit_info:
         main(arguments)
-    assert ended.value.code == 2
+    assert exit_info.value.code == 2
     lines = [line for line in capsys.readouterr().err.splitlines() if line]
     assert len(lines) == 1, lines
     return lines[0]
@@ -151,40 +151,40 @@ def refused(capsys, *arguments):
 @pytest.mark.parametrize("case", CASES)
 def test_what_cannot_be_run_is_told_in_one_sentence_as_a_scene_is_checked(capsys, case):
     arguments, words = CASES[case]
-    said = refused(capsys, "check", *arguments)
-    assert said.startswith("quintet: scene.toml: ") and words in said
-    assert refused(capsys, "run", *arguments) == said
+    message = refusal(capsys, "check", *arguments)
+    assert message.startswith("quintet: scene.toml: ") and words in message
+    assert refusal(capsys, "run", *arguments) == message
 
 
 @pytest.mark.parametrize("case", MISPLACED)
 def test_bodies_that_are_out_of_place_are_refused_before_the_first_window(capsys, case):
     arguments, words = MISPLACED[case]
-    assert words in refused(capsys, "run", *arguments)
+    assert words in refusal(capsys, "run", *arguments)
 
 
 def test_memory_that_is_not_there_is_planned_without_being_used(capsys):
     """Eight million bodies, and more particles than any machine holds, in obstacles too."""
-    before = psutil.Process().memory_info().rss
+    memory = psutil.Process().memory_info().rss
     block = "[{lowest=[0.2,0.0,0.2],highest=[0.4,0.2,0.4]}]"
     spacing = ["still_water", "--set", "components.water.spacing=1e-5"]
-    refused(capsys, "check", *spacing, "--set", "components.water.dimensions=3", "--set",
+    refusal(capsys, "check", *spacing, "--set", "components.water.dimensions=3", "--set",
             f"components.water.boundary.obstacles={block}", "--set",
             "components.water.fluid=[{lowest=[0,0,0],highest=[0.1,0.2,0.5]}]")  # fmt: skip
-    many = "{number=[200,200,200],spacing=[0.013,0.013,0.0125]}"
-    lone = ["--set", f"components.spheres.bodies.0.copies={many}"]
+    copies = "{number=[200,200,200],spacing=[0.013,0.013,0.0125]}"
+    settings = ["--set", f"components.spheres.bodies.0.copies={copies}"]
     with pytest.raises(SystemExit):
-        main(["check", "settling_packing", "--set", "components.spheres.planes=[]", *lone])
-    assert psutil.Process().memory_info().rss - before < 100e6
+        main(["check", "settling_packing", "--set", "components.spheres.planes=[]", *settings])
+    assert psutil.Process().memory_info().rss - memory < 100e6
 
 
-@pytest.mark.parametrize("where", ["tcp/127.0.0.1:{port}", "tcp/localhost:{port}"])
-def test_a_port_that_another_uses_is_told_before_anything_starts(capsys, tmp_path, where):
-    with socket.socket() as other:
-        other.bind(("127.0.0.1", 0))
-        other.listen()
-        endpoint = where.format(port=other.getsockname()[1])
-        said = refused(capsys, "run", "two_springs", "--set", f"endpoint={endpoint}")
-    assert said == (
+@pytest.mark.parametrize("template", ["tcp/127.0.0.1:{port}", "tcp/localhost:{port}"])
+def test_a_port_that_another_uses_is_told_before_anything_starts(capsys, tmp_path, template):
+    with socket.socket() as listener:
+        listener.bind(("127.0.0.1", 0))
+        listener.listen()
+        endpoint = template.format(port=listener.getsockname()[1])
+        message = refusal(capsys, "run", "two_springs", "--set", f"endpoint={endpoint}")
+    assert message == (
         f"quintet: scene.endpoint {endpoint}: the coupler must be able to listen there; it cannot "
         "(Address already in use). End what uses the port, name another, or give no endpoint."
     )
@@ -194,73 +194,79 @@ def test_a_port_that_another_uses_is_told_before_anything_starts(capsys, tmp_pat
 def test_a_folder_that_is_a_file_or_cannot_be_written_is_told(capsys, tmp_path):
     file = tmp_path / "file"
     file.write_text("mine")
-    said = refused(capsys, "run", "two_springs", "--out", str(file))
-    assert said == f"quintet: --out {file}: it must be a folder; it is a file. Name another."
-    said = refused(capsys, "run", "two_springs", "--out", str(file / "below"))
-    assert "it cannot be written (Not a directory). Name another folder." in said
-    said = refused(capsys, "run", "two_springs", "--out", "/proc/none")
-    assert "it cannot be written (No such file or directory). Name another folder." in said
+    message = refusal(capsys, "run", "two_springs", "--out", str(file))
+    assert message == f"quintet: --out {file}: it must be a folder; it is a file. Name another."
+    message = refusal(capsys, "run", "two_springs", "--out", str(file / "below"))
+    assert "it cannot be written (Not a directory). Name another folder." in message
+    message = refusal(capsys, "run", "two_springs", "--out", "/proc/none")
+    assert "it cannot be written (No such file or directory). Name another folder." in message
     assert file.read_text() == "mine" and len(list(tmp_path.iterdir())) == 1
 
 
-def ran(folder, *arguments):
-    with pytest.raises(SystemExit) as ended:
+def run_scene(folder, *arguments):
+    with pytest.raises(SystemExit) as exit_info:
         main(["run", str(folder / "scene.toml"), *arguments])
-    return ended.value.code
+    return exit_info.value.code
 
 
 def test_a_replay_of_a_run_that_does_not_fit_is_told_as_the_scene_is_checked(capsys, tmp_path):
     write_scene(tmp_path, end=0.1)
-    assert ran(tmp_path, "--out", "one") == 0
+    assert run_scene(tmp_path, "--out", "one") == 0
     capsys.readouterr()
     replay = [str(tmp_path / "scene.toml"), "--swap", "pong=replay@one"]
     rule = "components.pong: a replay can give at the times of its recording only"
-    said = refused(capsys, "check", *replay, "--set", "end=0.2")
-    assert f"{rule}, which ends at 0.1 s; scene.end is 0.2 s. End there, replay a longer" in said
-    said = refused(capsys, "check", *replay, "--set", "window=7e-4")
-    assert f"{rule}; this run has 143 windows of 0.000699301 s, the recording 100 windows" in said
-    assert "(of 0.001 s). Set scene.window to that of the recorded run" in said
-    said = refused(capsys, "check", *replay, "--set", "window=3e-3")
-    assert "the recording none at 0.0030303 s" in said
-    assert ran(tmp_path, *replay[1:], "--set", "end=0.05", "--out", "two") == 0
-    assert ran(tmp_path, *replay[1:], "--set", "window=2e-3", "--out", "three") == 0
+    message = refusal(capsys, "check", *replay, "--set", "end=0.2")
+    assert f"{rule}, which ends at 0.1 s; scene.end is 0.2 s. End there, replay a longer" in message
+    message = refusal(capsys, "check", *replay, "--set", "window=7e-4")
+    assert (
+        f"{rule}; this run has 143 windows of 0.000699301 s, the recording 100 windows" in message
+    )
+    assert "(of 0.001 s). Set scene.window to that of the recorded run" in message
+    message = refusal(capsys, "check", *replay, "--set", "window=3e-3")
+    assert "the recording none at 0.0030303 s" in message
+    assert run_scene(tmp_path, *replay[1:], "--set", "end=0.05", "--out", "two") == 0
+    assert run_scene(tmp_path, *replay[1:], "--set", "window=2e-3", "--out", "three") == 0
 
 
 def test_a_short_replay_is_not_held_against_longer_refinements(tmp_path):
     path = write_scene(tmp_path, end=0.1)
     refinement = '\n[[study]]\nlabel = "long"\nsettings = { end = 0.3 }\n'
     path.write_text(path.read_text() + refinement)
-    assert ran(tmp_path, "--out", "one") == 0
-    assert ran(tmp_path, "--swap", "pong=replay@one", "--out", "two") == 0
+    assert run_scene(tmp_path, "--out", "one") == 0
+    assert run_scene(tmp_path, "--swap", "pong=replay@one", "--out", "two") == 0
 
 
 def test_a_replay_without_a_run_is_of_the_latest_one(capsys, tmp_path):
     write_scene(tmp_path, end=0.02)
     runs = tmp_path / "runs"
     for number in range(3):
-        assert ran(tmp_path, "--set", f"end={0.02 + 0.01 * number}") == 0
+        assert run_scene(tmp_path, "--set", f"end={0.02 + 0.01 * number}") == 0
     shutil.copytree(runs / "toy-3", runs / "toy-10")
     (runs / "toy-11").mkdir()  # of no run
     shutil.copytree(runs / "toy", runs / "toy-12")
     marker = (runs / "toy-12" / "quintet-run.json").read_text()
     (runs / "toy-12" / "quintet-run.json").write_text(marker.replace('"toy"', '"toy-12"'))
     capsys.readouterr()
-    with pytest.raises(SystemExit) as ended:
+    with pytest.raises(SystemExit) as exit_info:
         main(["run", str(tmp_path / "scene.toml"), "--swap", "pong=replay", "--set", "end=0.04"])
-    assert ended.value.code == 0
+    assert exit_info.value.code == 0
     resolved = (runs / "toy-4" / "scene.toml").read_text()
     assert f'recording = "{runs / "toy-10"}"' in resolved
 
 
 def test_water_that_leaves_room_for_bodies_may_hold_them(capsys):
-    """What cannot begin says how it can: with the key that it names the same scene is sound."""
-    place = ["floating_cube", *CUBE_IN_WATER]
-    assert "or set remove_inside_bodies." in refused(capsys, "run", *place)
-    with pytest.raises(SystemExit) as ended:
-        main(["check", *place, "--set", "components.water.remove_inside_bodies=true"])
-    assert ended.value.code == 0
+    """A refusal names the key that helps: with this key the same scene is sound."""
+    arguments = ["floating_cube", *CUBE_IN_WATER]
+    assert "or set remove_inside_bodies." in refusal(capsys, "run", *arguments)
+    with pytest.raises(SystemExit) as exit_info:
+        main(["check", *arguments, "--set", "components.water.remove_inside_bodies=true"])
+    assert exit_info.value.code == 0
 
 
 def test_a_sentence_is_no_longer_than_a_few_lines_whatever_names_are_in_it(capsys):
-    said = refused(capsys, "check", "two_springs", "--set", f"components.lower.kind={'x' * 9000}")
-    assert len(said) < 2100 and "components.lower.kind xxx" in said and "Known here: " in said
+    message = refusal(
+        capsys, "check", "two_springs", "--set", f"components.lower.kind={'x' * 9000}"
+    )
+    assert (
+        len(message) < 2100 and "components.lower.kind xxx" in message and "Known here: " in message
+    )

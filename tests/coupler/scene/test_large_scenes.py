@@ -36,11 +36,11 @@ LARGE = {
 def test_an_absurd_scene_is_refused_soon(tmp_path, name):
     path = tmp_path / "scene.toml"
     path.write_text(LARGE[name])
-    began = time.process_time()
-    with pytest.raises(SceneError) as refused:
+    start = time.process_time()
+    with pytest.raises(SceneError) as error_info:
         load(str(path))
-    assert time.process_time() - began < 5.0
-    assert max(map(len, refused.value.mistakes)) < 5000
+    assert time.process_time() - start < 5.0
+    assert max(map(len, error_info.value.mistakes)) < 5000
 
 
 @pytest.mark.parametrize(
@@ -85,11 +85,11 @@ def test_a_word_needs_no_quotes(tmp_path, setting, title):
 def test_a_path_that_is_set_twice_is_told(tmp_path, capsys):
     path = tmp_path / "scene.toml"
     path.write_text(BASE)
-    with pytest.raises(SystemExit) as ended:
+    with pytest.raises(SystemExit) as exit_info:
         main(["check", str(path), "--set", "end=2.0", "--set", "end=0.5"])
-    told = capsys.readouterr()
-    assert ended.value.code == 0 and "0.5 s over" in told.out
-    assert "quintet: --set 'end' is given 2 times: the last one counts" in told.err
+    screen = capsys.readouterr()
+    assert exit_info.value.code == 0 and "0.5 s over" in screen.out
+    assert "quintet: --set 'end' is given 2 times: the last one counts" in screen.err
 
 
 def test_the_run_of_another_kind_than_replay_is_refused(tmp_path):

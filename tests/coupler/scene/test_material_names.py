@@ -47,9 +47,9 @@ def scene(tmp_path):
 
 
 def materials(scene, *settings):
-    checked = load(str(scene), settings=settings)
-    assert "materials" not in checked.resolved
-    return checked.resolved["components"]["spheres"]["materials"]
+    checked_scene = load(str(scene), settings=settings)
+    assert "materials" not in checked_scene.resolved
+    return checked_scene.resolved["components"]["spheres"]["materials"]
 
 
 def test_names_are_replaced_by_constants(scene):
@@ -98,9 +98,9 @@ WRONG = {
 
 @pytest.mark.parametrize("setting", WRONG)
 def test_mistakes_are_named_with_their_place(scene, setting):
-    with pytest.raises(SceneError) as refused:
+    with pytest.raises(SceneError) as error_info:
         load(str(scene), settings=[setting])
-    assert WRONG[setting] in str(refused.value)
+    assert WRONG[setting] in str(error_info.value)
 
 
 def test_a_file_of_materials_lies_below_the_folder_of_the_scene(scene, tmp_path):
@@ -119,11 +119,11 @@ def test_a_broken_file_of_materials_is_named(scene):
 
 
 def test_a_run_of_a_scene_with_names_leaves_their_constants(scene, tmp_path):
-    with pytest.raises(SystemExit) as ended:
+    with pytest.raises(SystemExit) as exit_info:
         main(["run", str(scene), "--out", str(tmp_path / "run")])
-    assert ended.value.code == 0
-    written = tomllib.loads((tmp_path / "run/scene.toml").read_text())
-    bead = written["components"]["spheres"]["materials"]["bead"]
+    assert exit_info.value.code == 0
+    table = tomllib.loads((tmp_path / "run/scene.toml").read_text())
+    bead = table["components"]["spheres"]["materials"]["bead"]
     assert bead["youngs_modulus"] == 70e9
 
 
@@ -144,12 +144,12 @@ def test_editors_accept_names_in_the_place_of_tables():
 
 @pytest.mark.parametrize("name", ["", *sorted(library())])
 def test_the_command_prints_every_material(name, capsys):
-    with pytest.raises(SystemExit) as ended:
+    with pytest.raises(SystemExit) as exit_info:
         main(["materials", *([name] if name else [])])
-    assert ended.value.code == 0
-    printed = capsys.readouterr().out
-    assert all(known in printed for known in ([name] if name else library()))
-    assert not name or "[1]" in printed
+    assert exit_info.value.code == 0
+    output = capsys.readouterr().out
+    assert all(material_name in output for material_name in ([name] if name else library()))
+    assert not name or "[1]" in output
     with pytest.raises(SystemExit):
         main(["materials", *([name] if name else []), "--json"])
     data = json.loads(capsys.readouterr().out)
@@ -158,9 +158,9 @@ def test_the_command_prints_every_material(name, capsys):
 
 
 def test_the_command_refuses_an_unknown_name(capsys):
-    with pytest.raises(SystemExit) as ended:
+    with pytest.raises(SystemExit) as exit_info:
         main(["materials", "steel-4430"])
-    assert ended.value.code == 2
-    printed = capsys.readouterr().err
-    assert "Did you mean steel-4340?" in printed
-    assert "The library has" in printed
+    assert exit_info.value.code == 2
+    message = capsys.readouterr().err
+    assert "Did you mean steel-4340?" in message
+    assert "The library has" in message

@@ -1,4 +1,4 @@
-"""What is set on a scene comes back as it was, whatever its names and values."""
+"""Settings on a scene come back unchanged, whatever their names and values."""
 
 import tomllib
 from pathlib import Path
@@ -29,9 +29,9 @@ def test_a_setting_is_read_back_as_it_was_given(value):
 
 
 def test_settings_may_be_arrays_and_paths():
-    given = {"a": np.float64(0.1), "b": np.eye(2), "c": (Path("x"), np.int64(3))}
+    settings = {"a": np.float64(0.1), "b": np.eye(2), "c": (Path("x"), np.int64(3))}
     table = {}
-    assert not [mistake for line in assignments(given) for mistake in put_set(table, line)]
+    assert not [mistake for line in assignments(settings) for mistake in put_set(table, line)]
     assert table == {"a": 0.1, "b": [[1.0, 0.0], [0.0, 1.0]], "c": ["x", 3]}
 
 
@@ -47,8 +47,8 @@ def test_the_scene_that_a_run_leaves_is_the_one_that_ran(tmp_path):
         '[components.one]\nkind = "echo"\n[stand_ins.one."a.b \\U0001F600"]\nx = [{ y = 1 }, {}]\n'
     )
     path.write_text(scene, encoding="utf-8")
-    with pytest.raises(SystemExit) as ended:
+    with pytest.raises(SystemExit) as exit_info:
         main(["run", str(path), "--out", str(tmp_path / "out")])
-    assert ended.value.code == 0
-    left = tomllib.loads((tmp_path / "out" / "scene.toml").read_text(encoding="utf-8"))
-    assert left == tomllib.loads(scene)
+    assert exit_info.value.code == 0
+    table = tomllib.loads((tmp_path / "out" / "scene.toml").read_text(encoding="utf-8"))
+    assert table == tomllib.loads(scene)

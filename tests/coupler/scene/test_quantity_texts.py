@@ -60,9 +60,9 @@ def toy(tmp_path, monkeypatch):
 
 
 def status(*arguments):
-    with pytest.raises(SystemExit) as ended:
-        main([str(one) for one in arguments])
-    return ended.value.code
+    with pytest.raises(SystemExit) as exit_info:
+        main([str(argument) for argument in arguments])
+    return exit_info.value.code
 
 
 @pytest.mark.parametrize("path", TEXTS)
@@ -84,17 +84,17 @@ def test_a_word_of_the_command_line_needs_no_quotes():
 def test_the_scene_that_a_run_leaves_has_numbers(toy):
     assert status("run", toy, "--preset", "long", "--out", "out") == 0
     with open("out/scene.toml", "rb") as file:
-        left = tomllib.load(file)
-    assert (left["end"], left["window"]) == (0.006, 0.002)
-    body = left["components"]["a"]["bodies"][0]
+        table = tomllib.load(file)
+    assert (table["end"], table["window"]) == (0.006, 0.002)
+    body = table["components"]["a"]["bodies"][0]
     assert (body["centre"], body["radius"], body["mass"]) == ([0.01, 0, 0], 0.005, 0.02)
 
 
 def test_a_sweep_over_texts_is_the_sweep_over_their_numbers(toy, capsys):
-    over = ("sweep", toy, "--out", "out", "--over")
-    assert status(*over, "window=1 ms,2 ms", "--json", "texts.json") == 0
-    assert status(*over, "window=1e-3,2e-3", "--json", "numbers.json") == 0
-    texts, numbers = (json.loads(Path(f"{n}.json").read_text()) for n in ("texts", "numbers"))
+    arguments = ("sweep", toy, "--out", "out", "--over")
+    assert status(*arguments, "window=1 ms,2 ms", "--json", "texts.json") == 0
+    assert status(*arguments, "window=1e-3,2e-3", "--json", "numbers.json") == 0
+    texts, numbers = (json.loads(Path(f"{name}.json").read_text()) for name in ("texts", "numbers"))
     assert texts["over"] == numbers["over"] == {"window": [0.001, 0.002]}
     for key in ("run", "label", "settings", "status", "items"):  # not the command, nor whether kept
         assert [row[key] for row in texts["rows"]] == [row[key] for row in numbers["rows"]], key
@@ -111,10 +111,10 @@ def test_the_range_of_a_limit_is_in_the_unit_of_its_parameter(toy):
 
 
 def test_mistakes_in_units_are_told_together(toy):
-    wrong = ["window=2 kg", "components.a.bodies.0.radius=5 foot_long"]
-    with pytest.raises(SceneError) as refused:
-        load(toy, settings=wrong)
-    window, radius = refused.value.mistakes
+    wrong_settings = ["window=2 kg", "components.a.bodies.0.radius=5 foot_long"]
+    with pytest.raises(SceneError) as error_info:
+        load(toy, settings=wrong_settings)
+    window, radius = error_info.value.mistakes
     assert window == (
         "toy.toml: scene.window must be in s, or in a unit of the same dimension, as in "
         "\"5 ms\"; found '2 kg'. Correct its unit."
@@ -142,17 +142,17 @@ def test_the_schema_takes_texts_where_a_key_has_a_unit(toy):
     validator = jsonschema.Draft7Validator(scene_schema())
     table = tomllib.loads(TOY)
     assert list(validator.iter_errors(table)) == []
-    for wrong in ("ms 2", "2", "auto "):
-        assert list(validator.iter_errors({**table, "window": wrong}))
+    for text in ("ms 2", "2", "auto "):
+        assert list(validator.iter_errors({**table, "window": text}))
     assert library()
 
 
 def test_a_number_that_ends_in_an_underscore_is_refused(capsys):
-    with pytest.raises(SystemExit) as ended:
+    with pytest.raises(SystemExit) as exit_info:
         main(["run", "two_springs", "--set", "window='2_kg'"])
-    assert ended.value.code == 2
-    said = capsys.readouterr().err
-    assert "scene.window should be a valid number or 'auto'; found '2_kg'. Correct it." in said
+    assert exit_info.value.code == 2
+    message = capsys.readouterr().err
+    assert "scene.window should be a valid number or 'auto'; found '2_kg'. Correct it." in message
 
 
 def test_units_of_keys_are_those_of_the_parameters():

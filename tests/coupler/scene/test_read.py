@@ -52,11 +52,11 @@ def scene(tmp_path):
     return write
 
 
-def said(path, capsys, *arguments):
-    """What a wrong scene says; it leaves nothing and ends with status 2."""
-    with pytest.raises(SystemExit) as ended:
+def mistakes_of(path, capsys, *arguments):
+    """The messages about a wrong scene; the command leaves no file and ends with status 2."""
+    with pytest.raises(SystemExit) as exit_info:
         main(["run", str(path), "--out", str(path.parent / "out"), *arguments])
-    assert ended.value.code == 2
+    assert exit_info.value.code == 2
     assert not (path.parent / "out").exists()
     lines = capsys.readouterr().err.splitlines()
     assert all(line.startswith("quintet: ") for line in lines)
@@ -118,10 +118,10 @@ WRONG = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("wrong", WRONG)
-def test_a_wrong_scene_is_refused(scene, capsys, wrong):
-    old, new, words = WRONG[wrong]
-    lines = said(scene((old, new)), capsys)
+@pytest.mark.parametrize("case", WRONG)
+def test_a_wrong_scene_is_refused(scene, capsys, case):
+    old, new, words = WRONG[case]
+    lines = mistakes_of(scene((old, new)), capsys)
     assert any(line.startswith(words) for line in lines), lines
     assert len(lines) == len(set(lines))
 
@@ -138,10 +138,10 @@ EXPECTATIONS = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("wrong", EXPECTATIONS)
-def test_a_wrong_expectation_is_refused(scene, capsys, wrong):
-    old, new, words = EXPECTATIONS[wrong]
-    lines = said(scene(more=EXPECT.replace(old, new, 1)), capsys)
+@pytest.mark.parametrize("case", EXPECTATIONS)
+def test_a_wrong_expectation_is_refused(scene, capsys, case):
+    old, new, words = EXPECTATIONS[case]
+    lines = mistakes_of(scene(more=EXPECT.replace(old, new, 1)), capsys)
     assert any(line.startswith(words) for line in lines), lines
 
 
@@ -162,15 +162,15 @@ ARGUMENTS = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("wrong", ARGUMENTS)
-def test_a_wrong_argument_is_refused(scene, capsys, wrong):
-    arguments, words = ARGUMENTS[wrong]
-    lines = said(scene(more="\n[presets.quick]\nend = 0.1\n"), capsys, *arguments)
+@pytest.mark.parametrize("case", ARGUMENTS)
+def test_a_wrong_argument_is_refused(scene, capsys, case):
+    arguments, words = ARGUMENTS[case]
+    lines = mistakes_of(scene(more="\n[presets.quick]\nend = 0.1\n"), capsys, *arguments)
     assert any(line.startswith(words) for line in lines), lines
 
 
 def test_all_mistakes_are_told_at_once(scene, capsys):
-    lines = said(
+    lines = mistakes_of(
         scene(
             ("end = 1.0", "end = -1.0\ncolour = 3"),
             ("[components.pong]", "[components.pong]\nitms = 3"),
@@ -184,8 +184,8 @@ def test_all_mistakes_are_told_at_once(scene, capsys):
 
 
 def test_what_follows_from_a_mistake_is_not_told(scene, capsys):
-    changed = scene(("[components.pong]", "[components.pong]\nitms = 3"), more=EXPECT)
-    assert said(changed, capsys, "--set", 'order=["pong","ping"]') == [
+    path = scene(("[components.pong]", "[components.pong]\nitms = 3"), more=EXPECT)
+    assert mistakes_of(path, capsys, "--set", 'order=["pong","ping"]') == [
         "components.pong.itms is not known. Did you mean items?"
     ]
 
@@ -193,7 +193,7 @@ def test_what_follows_from_a_mistake_is_not_told(scene, capsys):
 def test_a_recording_that_is_none_is_refused(scene, capsys, tmp_path):
     path = scene()
     (tmp_path / "recording.h5").write_text("not HDF5")
-    lines = said(path, capsys, "--swap", f"pong=replay@{tmp_path}")
+    lines = mistakes_of(path, capsys, "--swap", f"pong=replay@{tmp_path}")
     assert len(lines) == 1 and lines[0].startswith("components.pong: recording ")
     assert "it must be a whole recording of quintet; reading it found OSError: " in lines[0]
 
@@ -201,7 +201,7 @@ def test_a_recording_that_is_none_is_refused(scene, capsys, tmp_path):
 def test_bytes_that_are_no_text_are_refused(scene, capsys):
     path = scene()
     path.write_bytes(b"\xff\xfe\x00name")
-    assert said(path, capsys)[0].startswith("a scene must be valid TOML: ")
+    assert mistakes_of(path, capsys)[0].startswith("a scene must be valid TOML: ")
 
 
 @pytest.mark.parametrize(
@@ -219,9 +219,9 @@ def test_bytes_that_are_no_text_are_refused(scene, capsys):
 )
 def test_a_scene_that_is_not_there_is_refused(capsys, tmp_path, monkeypatch, name, words):
     monkeypatch.chdir(tmp_path)
-    with pytest.raises(SystemExit) as ended:
+    with pytest.raises(SystemExit) as exit_info:
         main(["run", name])
-    assert ended.value.code == 2
+    assert exit_info.value.code == 2
     assert capsys.readouterr().err.strip() == words
     assert not list(tmp_path.iterdir())
 
@@ -234,12 +234,15 @@ def test_links_need_names_of_their_own(scene):
 
 def test_settings_reach_what_they_name(scene):
     path = scene(more='\n[presets.quick]\nend = 0.1\n"components.pong.items" = 7\n')
-    made = load(str(path), "quick", ["components.ping.items=3", "output.interval=0.05"])
-    assert made.file.end == 0.1 and made.file.output.interval == 0.05
-    assert [one.checked.items for one in made.components.values()] == [3, 7]
-    assert made.resolved["components"]["pong"]["items"] == 7 and "presets" not in made.resolved
+    loaded_scene = load(str(path), "quick", ["components.ping.items=3", "output.interval=0.05"])
+    assert loaded_scene.file.end == 0.1 and loaded_scene.file.output.interval == 0.05
+    assert [component.checked.items for component in loaded_scene.components.values()] == [3, 7]
+    assert (
+        loaded_scene.resolved["components"]["pong"]["items"] == 7
+        and "presets" not in loaded_scene.resolved
+    )
 
 
 def test_components_step_in_the_order_that_is_asked_for(scene):
-    made = load(str(scene()), settings=['order=["pong", "ping"]'])
-    assert list(made.components) == ["pong", "ping"]
+    loaded_scene = load(str(scene()), settings=['order=["pong", "ping"]'])
+    assert list(loaded_scene.components) == ["pong", "ping"]

@@ -1,4 +1,4 @@
-"""What a refinement refines, and which orders it contributes to."""
+"""The kinds of refinements, and the orders to which they contribute."""
 
 import copy
 
@@ -51,11 +51,13 @@ def test_a_refinement_counts_for_each_kind_from_which_it_differs_in_the_size_alo
     windows = [
         refinement(f"{w} s", "window", window=w, **{"water.spacing": 0.2}) for w in (0.4, 0.2)
     ]
-    other = refinement("deep", "water.spacing", **{"water.spacing": 0.1, "water.depth": 4.0})
-    refinements, mistakes = read([*ladder, *windows, other], SCENE)
+    deep_refinement = refinement(
+        "deep", "water.spacing", **{"water.spacing": 0.1, "water.depth": 4.0}
+    )
+    refinements, mistakes = read([*ladder, *windows, deep_refinement], SCENE)
     assert not mistakes
-    assert [one.kind for one in refinements] == 2 * ["spacing"] + 2 * ["coupling"] + ["spacing"]
-    assert [one.ladders for one in refinements] == [
+    assert [row.kind for row in refinements] == 2 * ["spacing"] + 2 * ["coupling"] + ["spacing"]
+    assert [row.ladders for row in refinements] == [
         ("spacing",), ("spacing", "coupling"), ("coupling",), ("coupling",), ("spacing",),
     ]  # fmt: skip
     assert refinements[1].sizes == {"spacing": 0.2, "coupling": 0.1}
@@ -64,18 +66,18 @@ def test_a_refinement_counts_for_each_kind_from_which_it_differs_in_the_size_alo
 
 
 def test_what_is_refined_may_be_said():
-    said = refinement("a", "water.depth", refines="time step", **{"water.depth": 1.0})
-    (one,), mistakes = read([said], SCENE)
-    assert one.kind == "time step" and not mistakes
-    (one,), _ = read([refinement("a", refines="spacing")], SCENE)
-    assert one.kind == "spacing" and one.size is None and one.ladders == ()
+    table = refinement("a", "water.depth", refines="time step", **{"water.depth": 1.0})
+    (row,), mistakes = read([table], SCENE)
+    assert row.kind == "time step" and not mistakes
+    (row,), _ = read([refinement("a", refines="spacing")], SCENE)
+    assert row.kind == "spacing" and row.size is None and row.ladders == ()
     _, mistakes = read([refinement("a", refines="mesh")], SCENE)
     assert "study.a.refines" in mistakes[0] and "'coupling', 'time step', 'spacing'" in mistakes[0]
 
 
 def test_one_size_serves_all_refinements_of_a_kind():
-    two = [refinement("a", "water.depth"), refinement("b", "water.spacing", refines="model")]
-    _, mistakes = read(two, SCENE)
+    tables = [refinement("a", "water.depth"), refinement("b", "water.spacing", refines="model")]
+    _, mistakes = read(tables, SCENE)
     assert mistakes == [
         "study: one size must serve all refinements of the model; found water.depth, "
         "water.spacing. Name the same, or say what each refines with refines."
