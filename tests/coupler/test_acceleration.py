@@ -1,4 +1,4 @@
-"""Acceleration of iterated windows: how soon it comes to agreement, and what it depends on."""
+"""Acceleration of iterated windows: the speed of convergence, and its dependencies."""
 
 import itertools
 import os
@@ -26,8 +26,8 @@ def is_impulse(name, key):
     return key == "load.force"
 
 
-def settings(kind, **given):
-    return IterationSettings(acceleration=kind, **given)
+def settings(kind, **keys):
+    return IterationSettings(acceleration=kind, **keys)
 
 
 class Problem:
@@ -38,40 +38,40 @@ class Problem:
         self.matrix = -strength * np.abs(random.normal(size=(2 * size, 2 * size))) / size
         self.right, self.size, self.units = random.normal(size=2 * size), size, units
 
-    def found(self, guess, length):
+    def answer(self, guess, length):
         x = np.concatenate([guess[PLACE] / self.units[0], guess[FORCE] / (length * self.units[1])])
         y = self.matrix @ x + self.right
         first, second = y[: self.size], y[self.size :]
         return {PLACE: self.units[0] * first, FORCE: length * self.units[1] * second}
 
     def window(self, acceleration, guess, length=0.5, measure=None, limit=100):
-        """Solve one window; return its guesses and what was found last."""
+        """Solve one window; return its guesses and the last answer."""
         measure = measure or ConvergenceMeasure(1e-9, {}, is_impulse)
         acceleration.begin_window(length)
         guesses = [guess]
         for _ in range(limit):
-            found = self.found(guess, length)
-            residuals = measure.compare(guess, found, length)
+            answer = self.answer(guess, length)
+            residuals = measure.compare(guess, answer, length)
             if converged(residuals):
                 break
-            guess = acceleration.next(guess, found, allowed(residuals))
+            guess = acceleration.next(guess, answer, allowed(residuals))
             guesses.append(guess)
-        acceleration.end_window(guess, found)
-        return guesses, found
+        acceleration.end_window(guess, answer)
+        return guesses, answer
 
     def start(self):
         return {PLACE: np.zeros(self.size), FORCE: np.zeros(self.size)}
 
 
-def scalar(slope, kind, **given):
+def scalar(slope, kind, **keys):
     """Steps that the accelerated iteration of x = slope x + 1 takes to 1e-10."""
-    acceleration, x = make(settings(kind, **given), is_impulse), {PLACE: np.zeros(1)}
+    acceleration, x = make(settings(kind, **keys), is_impulse), {PLACE: np.zeros(1)}
     acceleration.begin_window(1.0)
     for step in range(60):
-        found = {PLACE: slope * x[PLACE] + 1.0}
-        if abs(found[PLACE] - x[PLACE])[0] < 1e-10:
+        answer = {PLACE: slope * x[PLACE] + 1.0}
+        if abs(answer[PLACE] - x[PLACE])[0] < 1e-10:
             return step
-        x = acceleration.next(x, found, {PLACE: 1e-10})
+        x = acceleration.next(x, answer, {PLACE: 1e-10})
     return None
 
 
@@ -142,9 +142,9 @@ def test_no_unit_of_a_field_changes_a_guess(kind):
         measure = ConvergenceMeasure(1e-9, {}, is_impulse)
         acceleration = make(settings(kind, relaxation=0.1), is_impulse)
         runs.append(problem.window(acceleration, problem.start(), 0.5, measure, limit=12)[0])
-    for one, other in zip(*runs, strict=True):
-        assert (one[PLACE] == other[PLACE] * 2.0**6).all()
-        assert (one[FORCE] == other[FORCE] * 2.0**-5).all()
+    for guess, scaled_guess in zip(*runs, strict=True):
+        assert (guess[PLACE] == scaled_guess[PLACE] * 2.0**6).all()
+        assert (guess[FORCE] == scaled_guess[FORCE] * 2.0**-5).all()
 
 
 @pytest.mark.parametrize("kind", ["aitken", "iqn-ils"])
@@ -157,12 +157,12 @@ def test_a_field_that_long_agrees_does_not_rule_the_others(kind):
         limits = {PLACE: 1e-8, FORCE: 1e-8} | dict.fromkeys(quiet, 1e-6)
         acceleration.begin_window(1.0)
         for step in range(200):
-            found = problem.found(guess, 1.0)
-            found |= {key: np.ones(4) + 1e-15 * noise.normal(size=4) for key in quiet}
-            if all(norm(found[key] - guess[key]) <= limits[key] for key in guess):
+            answer = problem.answer(guess, 1.0)
+            answer |= {key: np.ones(4) + 1e-15 * noise.normal(size=4) for key in quiet}
+            if all(norm(answer[key] - guess[key]) <= limits[key] for key in guess):
                 repetitions.append(step)
                 break
-            guess = acceleration.next(guess, found, limits)
+            guess = acceleration.next(guess, answer, limits)
     without, together = repetitions
     assert together <= without + 1
 
@@ -176,14 +176,14 @@ def test_a_saved_acceleration_goes_on_with_the_same_bits(kind):
         last = problem.start()
         for window in range(6):
             if interrupted and window in (0, 3):
-                kept, sizes = acceleration.save(), measure.save()
+                saved, sizes = acceleration.save(), measure.save()
                 acceleration = make(settings(kind, relaxation=0.1), is_impulse)
-                acceleration.load({key: np.array(array) for key, array in kept.items()})
+                acceleration.load({key: np.array(array) for key, array in saved.items()})
                 measure = ConvergenceMeasure(1e-9, {}, is_impulse)
                 measure.load(sizes)
             problem.right = problem.right * 1.1 + 0.1
             guess, last = problem.window(acceleration, last, 0.5 + 0.1 * window, measure, 30)
-        return np.concatenate([one[key] for one in guess for key in one])
+        return np.concatenate([fields[key] for fields in guess for key in fields])
 
     assert run(False).tobytes() == run(True).tobytes()
 
@@ -198,13 +198,13 @@ def test_columns_are_forgotten_after_so_many_windows_that_made_some():
         last = problem.window(acceleration, last)[1]
         ages.append(max(acceleration.save()["ages"]))
     assert max(ages) == 2
-    kept = acceleration.save()
+    saved = acceleration.save()
     acceleration.begin_window(0.5)
     acceleration.end_window(last, last)  # agreed at once: nothing is learned, nothing forgotten
-    assert acceleration.save()["ages"].tolist() == kept["ages"].tolist()
-    none = make(settings("iqn-ils", reuse=0), is_impulse)
-    problem.window(none, problem.start())
-    assert none.save()["ages"].size == 0
+    assert acceleration.save()["ages"].tolist() == saved["ages"].tolist()
+    without_reuse = make(settings("iqn-ils", reuse=0), is_impulse)
+    problem.window(without_reuse, problem.start())
+    assert without_reuse.save()["ages"].size == 0
 
 
 def test_columns_that_no_longer_hold_are_dropped_when_the_residual_grows():
@@ -220,11 +220,13 @@ def test_least_squares_are_those_of_lapack():
     random = np.random.default_rng(2)
     columns, target = random.normal(size=(7, 50)), random.normal(size=50)
     columns[3] += 1e5 * columns[0]  # ill-conditioned, yet nothing to leave out
-    found, kept = filtered_least_squares(columns, target, 1e-8)
+    coefficients, is_kept = filtered_least_squares(columns, target, 1e-8)
     exact = np.linalg.lstsq(columns.T, target, rcond=None)[0]
-    assert kept.all()
-    np.testing.assert_allclose(found, exact, rtol=1e-8)
-    np.testing.assert_allclose(combination(found, columns), columns.T @ found, atol=1e-10)
+    assert is_kept.all()
+    np.testing.assert_allclose(coefficients, exact, rtol=1e-8)
+    np.testing.assert_allclose(
+        combination(coefficients, columns), columns.T @ coefficients, atol=1e-10
+    )
 
 
 def test_a_column_that_says_nothing_new_is_left_out():
@@ -232,11 +234,11 @@ def test_a_column_that_says_nothing_new_is_left_out():
     columns, target = random.normal(size=(5, 30)), random.normal(size=30)
     columns[2] = columns[0] - 2.0 * columns[1] + 1e-4 * columns[4]
     columns[3] = 0.0
-    found, kept = filtered_least_squares(columns, target, 1e-3)
-    assert kept.tolist() == [True, True, False, False, True]
-    assert not found[~kept].any()
-    exact = np.linalg.lstsq(columns[kept].T, target, rcond=None)[0]
-    np.testing.assert_allclose(found[kept], exact, rtol=1e-10)
+    coefficients, is_kept = filtered_least_squares(columns, target, 1e-3)
+    assert is_kept.tolist() == [True, True, False, False, True]
+    assert not coefficients[~is_kept].any()
+    exact = np.linalg.lstsq(columns[is_kept].T, target, rcond=None)[0]
+    np.testing.assert_allclose(coefficients[is_kept], exact, rtol=1e-10)
 
 
 def test_inner_products_are_exact_to_rounding_whatever_the_layout():
@@ -277,7 +279,7 @@ print(seen.hexdigest())
 
 
 def test_no_number_of_threads_changes_a_bit():
-    found = set()
+    outputs = set()
     for threads in ("1", "2"):
         names = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
         environment = {**os.environ, **dict.fromkeys(names, threads)}
@@ -285,12 +287,12 @@ def test_no_number_of_threads_changes_a_bit():
             [sys.executable, "-c", MANY], env=environment, capture_output=True, text=True
         )
         assert run.returncode == 0, run.stderr
-        found.add(run.stdout)
-    assert len(found) == 1
+        outputs.add(run.stdout)
+    assert len(outputs) == 1
 
 
 def test_no_library_of_linear_algebra_has_a_part_in_it():
-    """What decides an exchange names neither a matrix product nor numpy's linear algebra."""
+    """The code of an exchange uses neither a matrix product nor numpy's linear algebra."""
     from quintet.coupler.coupling.iteration import (
         acceleration,
         convergence_measure,

@@ -1,4 +1,4 @@
-"""Every command does what its help says, and ends with the status that is stated."""
+"""Every command does its documented work, and ends with its documented status."""
 
 import io
 import json
@@ -30,13 +30,13 @@ OVER = [pytest.param("zenoh", marks=pytest.mark.zenoh), pytest.param("mpi", mark
 
 
 def status(*arguments):
-    with pytest.raises(SystemExit) as ended:
-        main([str(one) for one in arguments])
-    return ended.value.code
+    with pytest.raises(SystemExit) as exit_info:
+        main([str(argument) for argument in arguments])
+    return exit_info.value.code
 
 
 @pytest.fixture
-def ran(tmp_path, capsys):
+def run_folder(tmp_path, capsys):
     """A finished run in memory."""
     path = write_scene(tmp_path, end=0.02)
     assert status("run", path, "--out", tmp_path / "out") == 0
@@ -94,7 +94,7 @@ def test_the_version_is_that_of_the_package(capsys):
 
 def test_check_prints_the_plan_and_starts_nothing(tmp_path, capsys):
     assert status("check", "--import", write_scene(tmp_path, "zenoh", end=0.02)) == 0
-    said = " ".join(capsys.readouterr().out.split())
+    output = " ".join(capsys.readouterr().out.split())
     for words in (
         "0.02 s over zenoh; 3 processes, the coupler one of them",
         "run: ping, pong; serial; 20 windows of 0.001 s",
@@ -102,7 +102,7 @@ def test_check_prints_the_plan_and_starts_nothing(tmp_path, capsys):
         "link ping-pong: ping -> pong",
         "link ping-pong: pong -> ping",
     ):
-        assert words in said
+        assert words in output
     assert {path.name for path in tmp_path.iterdir()} <= {"scene.toml", "toys.py", "__pycache__"}
 
 
@@ -125,8 +125,8 @@ def test_an_item_that_no_component_has_is_refused_as_ports_are_joined(tmp_path, 
     assert sentence in capsys.readouterr().err
 
 
-def test_results_have_all_that_they_promise(ran):
-    results = json.loads((ran / "results.json").read_text())
+def test_results_have_all_that_they_promise(run_folder):
+    results = json.loads((run_folder / "results.json").read_text())
     for key in ("scene", "preset", "transport", "status", "windows", "time", "expect", "command"):
         assert key in results
     assert results["time"] == pytest.approx(0.02)
@@ -137,26 +137,27 @@ def test_results_have_all_that_they_promise(ran):
     assert {"cpu", "cores", "versions"} <= results["machine"].keys()
 
 
-def test_a_run_can_be_run_again_from_the_scene_that_it_left(ran, tmp_path):
-    (tmp_path / "again.toml").write_text((ran / "scene.toml").read_text())
+def test_a_run_can_be_run_again_from_the_scene_that_it_left(run_folder, tmp_path):
+    (tmp_path / "again.toml").write_text((run_folder / "scene.toml").read_text())
     assert status("run", tmp_path / "again.toml", "--out", tmp_path / "again") == 0
-    assert status("diff", ran, tmp_path / "again") == 0
+    assert status("diff", run_folder, tmp_path / "again") == 0
 
 
-def test_a_second_run_into_a_folder_replaces_the_first_and_nothing_else(ran, tmp_path):
-    (ran / "notes.txt").write_text("mine")
+def test_a_second_run_into_a_folder_replaces_the_first_and_nothing_else(run_folder, tmp_path):
+    (run_folder / "notes.txt").write_text("mine")
     assert (
-        status("run", tmp_path / "scene.toml", "--out", ran, "--force", "--set", "end=0.005") == 0
+        status("run", tmp_path / "scene.toml", "--out", run_folder, "--force", "--set", "end=0.005")
+        == 0
     )
-    assert (ran / "notes.txt").read_text() == "mine"
-    assert json.loads((ran / "results.json").read_text())["windows"] == 5
+    assert (run_folder / "notes.txt").read_text() == "mine"
+    assert json.loads((run_folder / "results.json").read_text())["windows"] == 5
 
 
-def test_show_tells_what_happened(ran, capsys):
-    assert status("show", ran) == 0
-    said = capsys.readouterr().out
-    assert "toy: done, 20 windows to t = 0.02 s over memory" in said and "ping-pong" in said
-    assert status("show", ran, "--json") == 0
+def test_show_tells_what_happened(run_folder, capsys):
+    assert status("show", run_folder) == 0
+    output = capsys.readouterr().out
+    assert "toy: done, 20 windows to t = 0.02 s over memory" in output and "ping-pong" in output
+    assert status("show", run_folder, "--json") == 0
     assert json.loads(capsys.readouterr().out)["status"] == "done"
 
 
@@ -167,14 +168,14 @@ def test_show_and_diff_refuse_what_is_no_run(tmp_path, capsys):
     assert "there is no such file. Run the scene first." in capsys.readouterr().err
 
 
-def test_diff_finds_the_first_difference(ran, tmp_path, capsys):
-    other = tmp_path / "other"
-    changed = ("--set", "components.pong.items=5", "--set", "components.pong.substeps=2")
-    assert status("run", tmp_path / "scene.toml", "--out", other, *changed) == 0
+def test_diff_finds_the_first_difference(run_folder, tmp_path, capsys):
+    folder = tmp_path / "other"
+    settings = ("--set", "components.pong.items=5", "--set", "components.pong.substeps=2")
+    assert status("run", tmp_path / "scene.toml", "--out", folder, *settings) == 0
     capsys.readouterr()
-    assert status("diff", ran, other) == 1
+    assert status("diff", run_folder, folder) == 1
     assert capsys.readouterr().out.startswith("window 1 (t = 0.001 s): pong.out.")
-    assert status("diff", ran, ran) == 0
+    assert status("diff", run_folder, run_folder) == 0
     assert "the same, bit for bit" in capsys.readouterr().out
 
 
@@ -188,22 +189,22 @@ def test_every_transport_gives_the_same_bits(tmp_path, capsys, transport, scheme
     assert run.wait() == 0, run.err
     assert run.results["transport"] == transport
     assert status("diff", tmp_path / "memory", run.folder) == 0
-    # What it says is the same as well, times of the clock apart.
+    # The output is the same too, except for clock times.
     assert f"toy: done, 200 windows to t = 0.2 s over {transport}" in run.out
 
 
-def test_a_replayed_component_gives_the_same_bits(ran, tmp_path, capsys):
+def test_a_replayed_component_gives_the_same_bits(run_folder, tmp_path, capsys):
     path = tmp_path / "scene.toml"
-    swap = ("--swap", f"ping=replay@{ran}")
-    one_way = ("--set", 'links.0.pairs=[["ping.out", "pong.in"]]')
-    one_way += ("--set", 'output.fields=["pong.out.number"]')  # no link reads it any more
-    assert status("run", path, "--out", tmp_path / "again", *swap, *one_way) == 0
-    found = json.loads((tmp_path / "again" / "results.json").read_text())
-    assert found["status"] == "done"
+    swap = ("--swap", f"ping=replay@{run_folder}")
+    settings = ("--set", 'links.0.pairs=[["ping.out", "pong.in"]]')
+    settings += ("--set", 'output.fields=["pong.out.number"]')  # no link reads it any more
+    assert status("run", path, "--out", tmp_path / "again", *swap, *settings) == 0
+    results = json.loads((tmp_path / "again" / "results.json").read_text())
+    assert results["status"] == "done"
     from quintet.coupler.files.recording import Recording
 
-    with Recording(ran) as one, Recording(tmp_path / "again") as other:
-        gap = one.field("pong", "out.number") - other.field("pong", "out.number")
+    with Recording(run_folder) as original, Recording(tmp_path / "again") as replayed:
+        gap = original.field("pong", "out.number") - replayed.field("pong", "out.number")
     assert abs(gap).max() < 1e-15
 
 

@@ -1,4 +1,4 @@
-"""What a scene does not name is not imported, by nobody."""
+"""No process imports a component or library that the scene does not need."""
 
 import json
 import os
@@ -55,28 +55,28 @@ class Spy(Toy):
 
 
 def fresh(tmp_path, program, *arguments):
-    """Run a program in a fresh interpreter; return what it found, and what it said of errors."""
-    found = tmp_path / "modules.json"
-    done = subprocess.run(
+    """Run a program in a fresh interpreter; return its findings and its errors."""
+    path = tmp_path / "modules.json"
+    result = subprocess.run(
         [sys.executable, "-c", program, *arguments],
-        env={**os.environ, "FOUND": str(found)},
+        env={**os.environ, "FOUND": str(path)},
         cwd=tmp_path,
         capture_output=True,
         text=True,
         timeout=120,
     )
-    return json.loads(found.read_text()), done.stderr
+    return json.loads(path.read_text()), result.stderr
 
 
 def modules(tmp_path, *arguments):
-    """Run the command line in a fresh interpreter; return what it imported."""
-    (status, names), said = fresh(tmp_path, MAIN, *arguments)
-    assert status == 0, said
+    """Run the command line in a fresh interpreter; return the imported modules."""
+    (status, names), errors = fresh(tmp_path, MAIN, *arguments)
+    assert status == 0, errors
     return set(names)
 
 
 def solvers(names):
-    """Solver packages, and whatever of one is more than its manifest."""
+    """Solver packages, and their modules other than manifests."""
     parts = [name.split(".") for name in names if name.startswith("quintet.components.")]
     parts = [part for part in parts if part[2] != "shared"]
     return {part[2] for part in parts}, {part[3] for part in parts if len(part) > 3}
@@ -90,7 +90,7 @@ def test_one_component_in_memory_imports_no_transport_and_no_other_solver(tmp_pa
     assert not names & {"quintet.interfaces.lines.zenoh", "quintet.interfaces.lines.mpi"}
     assert solvers(names) == ({"stand_ins"}, {"params", "recorded", "echo"})
     links = {name for name in names if name.startswith("quintet.coupler.coupling.links.")}
-    assert links <= {"quintet.coupler.coupling.links.keys"}  # what all of them have
+    assert links <= {"quintet.coupler.coupling.links.keys"}  # modules that all of them load
 
 
 def test_a_scene_imports_the_component_that_it_names_and_no_other(tmp_path):
@@ -105,10 +105,10 @@ def test_a_scene_imports_the_component_that_it_names_and_no_other(tmp_path):
 @pytest.mark.zenoh
 def test_the_coupler_of_several_processes_imports_no_solver(tmp_path):
     scene = tmp_path / "scene.toml"
-    two = ALONE.format(name="ping", kind="echo", settings="items = 3")
-    two += '[components.pong]\nkind = "echo"\nitems = 3\n[[links]]\nkind = "direct"\n'
-    two += 'pairs = [["ping.returned", "pong.passed"], ["pong.returned", "ping.passed"]]\n'
-    scene.write_text(two)
+    text = ALONE.format(name="ping", kind="echo", settings="items = 3")
+    text += '[components.pong]\nkind = "echo"\nitems = 3\n[[links]]\nkind = "direct"\n'
+    text += 'pairs = [["ping.returned", "pong.passed"], ["pong.returned", "ping.passed"]]\n'
+    scene.write_text(text)
     names = modules(tmp_path, "run", str(scene), "--transport", "zenoh")
     assert "zenoh" in names and not names & (HEAVY - {"zenoh", "cryptography"})
     assert "quintet.coupler.launch.certificates" not in names
@@ -131,15 +131,15 @@ NEED_SCIPY = ("column_collapse", "floating_hull", "hull_in_waves", "spheric_10")
 
 
 @pytest.fixture(scope="module")
-def checked(tmp_path_factory):
-    """Check all scenes one by one; return the status of each, and what was first imported there."""
+def checked_scenes(tmp_path_factory):
+    """Check all scenes one by one; return the status of each, and the modules it first imported."""
     names = sorted(library(), key=lambda name: (name in NEED_SCIPY, name))
     return fresh(tmp_path_factory.mktemp("checked"), CHECKS, *names)[0]
 
 
 @pytest.mark.parametrize("name", library())
-def test_checking_a_scene_imports_no_solver_and_no_transport(checked, name):
-    status, names = checked[name]
+def test_checking_a_scene_imports_no_solver_and_no_transport(checked_scenes, name):
+    status, names = checked_scenes[name]
     assert status == 0
     assert set(names) & {*HEAVY, "h5py"} <= ({"scipy"} if name in NEED_SCIPY else set())
     assert not solvers(names)[1] & {"component", "kernels", "laws"}
@@ -147,14 +147,14 @@ def test_checking_a_scene_imports_no_solver_and_no_transport(checked, name):
 
 @pytest.mark.zenoh
 def test_a_component_imports_neither_coupler_nor_another_transport(tmp_path, monkeypatch):
-    seen = tmp_path / "seen"
-    monkeypatch.setenv("SEEN", str(seen))
+    names_file = tmp_path / "seen"
+    monkeypatch.setenv("SEEN", str(names_file))
     path = write_scene(tmp_path, "zenoh", 0.01)
     (tmp_path / "spy.py").write_text(SPY)
     path.write_text(path.read_text().replace('pong]\nkind = "toys:Toy"', 'pong]\nkind = "spy:Spy"'))
     run = Started(path)
     assert run.wait() == 0, run.err
-    names = set(seen.read_text().split())
+    names = set(names_file.read_text().split())
     assert "zenoh" in names
     assert not names & {"mpi4py", "matplotlib", "h5py", "rich", "numba"}
     assert not {name for name in names if name.startswith("quintet.coupler")}

@@ -148,31 +148,33 @@ def swings(folder):
 def moorings(folder):
     """Write the package of a text, and its scene."""
     package = folder / "mooring"
-    for name, inside in FILES.findall((ROOT / "interfaces/README.md").read_text()):
+    for name, content in FILES.findall((ROOT / "interfaces/README.md").read_text()):
         path = folder / "hanging.toml" if name == "scene.toml" else package / name
         path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(inside)
+        path.write_text(content)
     return package
 
 
-def unpacked(package):
+def unpack(package):
     """Lay a package out as pip would; return the folder that has it."""
     project = tomllib.loads((package / "pyproject.toml").read_text())["project"]
-    told = package / f"{project['name']}-{project['version']}.dist-info"
-    told.mkdir()
-    (told / "METADATA").write_text(f"Name: {project['name']}\nVersion: {project['version']}\n")
+    info_folder = package / f"{project['name']}-{project['version']}.dist-info"
+    info_folder.mkdir()
+    (info_folder / "METADATA").write_text(
+        f"Name: {project['name']}\nVersion: {project['version']}\n"
+    )
     lines = []
     for group, points in project["entry-points"].items():
         lines += [f"[{group}]", *(f"{key} = {value}" for key, value in points.items())]
-    (told / "entry_points.txt").write_text("\n".join(lines))
+    (info_folder / "entry_points.txt").write_text("\n".join(lines))
     return str(package)
 
 
 @pytest.fixture(scope="module")
 def installed(tmp_path_factory):
-    """Two packages beside those that are installed here; how to run quintet with them."""
+    """A function that runs quintet with two further packages on its path."""
     folder = tmp_path_factory.mktemp("outside")
-    paths = [unpacked(package) for package in (swings(folder), moorings(folder))]
+    paths = [unpack(package) for package in (swings(folder), moorings(folder))]
     env = {**os.environ, "PYTHONPATH": os.pathsep.join(paths), "PYTHONSAFEPATH": "1"}
 
     def quintet(*words, seconds=120):
@@ -190,8 +192,8 @@ def by_pip(tmp_path_factory):
     env = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
     subprocess.run([sys.executable, "-m", "venv", folder / "venv"], check=True)
     hidden = [path.name for path in ROOT.glob(".*") if path.name != ".package"]
-    left_out = shutil.ignore_patterns(*hidden, "build", "runs", "tests", "*.egg-info")
-    shutil.copytree(ROOT, folder / "quintet", ignore=left_out, symlinks=True)
+    ignored = shutil.ignore_patterns(*hidden, "build", "runs", "tests", "*.egg-info")
+    shutil.copytree(ROOT, folder / "quintet", ignore=ignored, symlinks=True)
     packages = [f"{folder / 'quintet'}[mpi,zenoh]", swings(folder), moorings(folder)]
     subprocess.run([bin / "pip", "install", "--quiet", *packages], check=True, env=env)
 
@@ -202,19 +204,19 @@ def by_pip(tmp_path_factory):
 
 
 def run(line, folder, env, seconds):
-    done = subprocess.run(
+    result = subprocess.run(
         line, cwd=folder, env=env, capture_output=True, text=True, timeout=seconds
     )
-    return done.returncode, done.stdout + done.stderr, folder
+    return result.returncode, result.stdout + result.stderr, folder
 
 
 def test_an_entry_point_to_a_class_is_checked_described_and_conforms(installed):
-    status, said, _ = installed("check", "swings.toml")
-    assert status == 0 and "lower takes load (force [N, impulse])" in said
-    status, said, _ = installed("describe", "swing")
-    assert status == 0 and said.startswith("swing: A mass on a spring, on the ground\n")
-    status, said, _ = installed("conform", "swing")
-    assert status == 0 and "swing conforms; " in said, said
+    status, output, _ = installed("check", "swings.toml")
+    assert status == 0 and "lower takes load (force [N, impulse])" in output
+    status, output, _ = installed("describe", "swing")
+    assert status == 0 and output.startswith("swing: A mass on a spring, on the ground\n")
+    status, output, _ = installed("conform", "swing")
+    assert status == 0 and "swing conforms; " in output, output
 
 
 @pytest.mark.zenoh
@@ -222,8 +224,8 @@ def test_an_entry_point_to_a_class_is_checked_described_and_conforms(installed):
 def test_a_class_runs_over_every_transport_to_the_same_bits(installed):
     for transport in ("memory", "zenoh", "mpi"):
         words = ("--transport", transport, "--set", "end=0.1", "--out", f"swings-{transport}")
-        status, said, _ = installed("run", "swings.toml", *words)
-        assert status == 1 and "swings" in said, said  # too short for what is expected of 1 s
+        status, output, _ = installed("run", "swings.toml", *words)
+        assert status == 1 and "swings" in output, output  # too short for the expectations at 1 s
         if transport != "memory":
             assert installed("diff", "swings-memory", f"swings-{transport}")[0] == 0
 
@@ -231,8 +233,8 @@ def test_a_class_runs_over_every_transport_to_the_same_bits(installed):
 @pytest.mark.parametrize("transport", OVER)
 def test_a_manifest_of_a_package_runs_and_conforms(installed, transport):
     words = ("--transport", transport, "--out", f"hanging-{transport}")
-    status, said, _ = installed("run", "hanging.toml", *words)
-    assert status == 0, said
+    status, output, _ = installed("run", "hanging.toml", *words)
+    assert status == 0, output
 
 
 @pytest.mark.parametrize("transport", OVER)
@@ -240,33 +242,33 @@ def test_a_manifest_of_a_package_runs_and_conforms(installed, transport):
 def test_packages_installed_by_pip_run_and_conform(by_pip, transport):
     for scene in ("swings", "hanging"):
         words = ("--transport", transport, "--out", f"{scene}-{transport}")
-        status, said, _ = by_pip("run", f"{scene}.toml", *words)
-        assert status == 0, said
+        status, output, _ = by_pip("run", f"{scene}.toml", *words)
+        assert status == 0, output
     for kind in ("swing", "mooring"):
-        status, said, _ = by_pip("conform", kind)
-        assert status == 0 and f"{kind} conforms" in said, said
+        status, output, _ = by_pip("conform", kind)
+        assert status == 0 and f"{kind} conforms" in output, output
     assert "mooring" in by_pip("describe")[1]
 
 
-def adapted(quintet, transport, seconds, way):
-    """Run a component whose every step waits for a program; its positions."""
+def positions_of(quintet, transport, seconds, way):
+    """Positions of a component whose every step waits for a program."""
     folder = quintet("--version")[2]
     name = f"{way}-{transport}-{seconds}"
     scene = folder / f"{name}.toml"
     scene.write_text(ADAPTED.format(transport=transport, seconds=seconds, way=way))
-    status, said, _ = quintet("run", scene.name, "--out", name, seconds=4 * seconds + 60)
-    assert status == 0, said
+    status, output, _ = quintet("run", scene.name, "--out", name, seconds=4 * seconds + 60)
+    assert status == 0, output
     with Recording(folder / name) as recording:
         return recording.history("program", "motion.position", 0)[:, 0].tolist()
 
 
 @pytest.mark.zenoh
 def test_a_step_may_run_a_program(installed):
-    assert adapted(installed, "zenoh", 1, "waits") == [0.0, 1.0, 2.0]
+    assert positions_of(installed, "zenoh", 1, "waits") == [0.0, 1.0, 2.0]
 
 
 @pytest.mark.full
 @pytest.mark.parametrize("transport", OVER)
 @pytest.mark.parametrize("way", ["computes", "waits"])
 def test_a_step_may_run_a_program_for_half_a_minute(installed, transport, way):
-    assert adapted(installed, transport, 30, way) == [0.0, 1.0, 2.0]
+    assert positions_of(installed, transport, 30, way) == [0.0, 1.0, 2.0]
