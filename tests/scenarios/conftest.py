@@ -15,7 +15,7 @@ Run = Callable[..., dict]
 def run_scene(tmp_path_factory: pytest.TempPathFactory) -> Run:
     """Run a scene without its pictures; return its results, with the expectations by name.
 
-    ``energy_gained`` is the largest rise of energy that nothing explains, over that turned over.
+    ``energy_gained`` is the largest unexplained rise of energy, over the energy turned over.
     """
 
     def run(scene: str, *options: str) -> dict:
@@ -23,11 +23,11 @@ def run_scene(tmp_path_factory: pytest.TempPathFactory) -> Run:
         plain = ["--set", "output.interval=0", "--set", "output.pictures=[]"]
         with pytest.raises(SystemExit) as ended:
             main(["run", scene, "--out", str(out), *plain, *options])
-        found = json.loads((out / "results.json").read_text())
-        assert ended.value.code in (0, 1), found
-        by_name = {outcome["name"]: outcome for outcome in found["expect"]}
-        balance = found["ledger"]["energy_balance"]
+        results = json.loads((out / "results.json").read_text())
+        assert ended.value.code in (0, 1), results
+        by_name = {outcome["name"]: outcome for outcome in results["expect"]}
+        balance = results["ledger"]["energy_balance"]
         gained = balance["run"]["gained"] / balance["scale"] if balance else None
-        return found | {"folder": Path(out), "by_name": by_name, "energy_gained": gained}
+        return results | {"folder": Path(out), "by_name": by_name, "energy_gained": gained}
 
     return run

@@ -22,10 +22,10 @@ COARSE = pytest.mark.xfail(strict=True, reason="no fluid fits below a sphere on 
     [pytest.param("sphere", 0.5236, marks=[pytest.mark.full, COARSE]), ("box", 1.0)],
 )
 def test_it_weighs_its_weight_less_its_buoyancy(run_scene: Run, shape: str, mass: float) -> None:
-    found = run_scene(SCENE, *(["--preset", "box"] if shape == "box" else []))
-    assert found["by_name"]["contact"]["met"], found["expect"]
-    # Of the fluid that it stood in as much is removed as the lattice has places in it.
-    (note,) = found["notes"]["water"]
+    results = run_scene(SCENE, *(["--preset", "box"] if shape == "box" else []))
+    assert results["by_name"]["contact"]["met"], results["expect"]
+    # The fluid on the lattice sites inside the body is removed.
+    (note,) = results["notes"]["water"]
     assert "body 0 stood in the fluid" in note and "kg, were removed" in note
     removed = float(note.split(" kg")[0].split()[-1])
     assert removed == pytest.approx(mass, rel=0.25 if shape == "sphere" else 1e-9)
@@ -35,10 +35,10 @@ def test_without_films_it_is_told_what_is_missing(run_scene: Run) -> None:
     plain = ["--set", "end=0.004", "--set", "components.water.remove_inside_bodies=false"]
     cut = "[{lowest=[0,0,0],highest=[0.1,0.3,0.2]}, {lowest=[0.1,0,0.1],highest=[0.3,0.3,0.2]}]"
     plain += ["--set", f"components.water.fluid={cut}"]
-    found = run_scene(
+    results = run_scene(
         SCENE, "--preset", "box", *plain, "--set", "components.water.boundary.method=dbc"
     )
-    (note,) = found["notes"]["water"]
+    (note,) = results["notes"]["water"]
     assert "body 0 touches a wall under water, and no film of water presses" in note
     assert "boundary.method dbc knows none" in note
     quiet = run_scene(

@@ -16,9 +16,9 @@ SERIAL, SHORT = "scheme='serial'", ("end=0.1", "expect=[]")
 
 def run(out: Path, scene: str, *settings: str) -> tuple[int, dict]:
     """Run a scene over memory; return its exit status and its results."""
-    asked = [word for one in settings for word in ("--set", one)]
+    options = [word for setting in settings for word in ("--set", setting)]
     with pytest.raises(SystemExit) as ended:
-        main(["run", scene, "--transport", "memory", "--out", str(out), *asked])
+        main(["run", scene, "--transport", "memory", "--out", str(out), *options])
     return ended.value.code or 0, json.loads((out / "results.json").read_text())
 
 
@@ -37,40 +37,45 @@ def test_windows_longer_than_a_stiff_period_are_warned_of(tmp_path, scheme, stif
     status, results = run(tmp_path / "run", "two_springs", f"scheme='{scheme}'", stiff, *SHORT)
     assert results["status"] == "done"
     assert status == 1
-    texts = [one["text"] for one in results["warnings"] if one["source"] == "link spring"]
+    texts = [
+        warning["text"] for warning in results["warnings"] if warning["source"] == "link spring"
+    ]
     assert any("windows of 0.002 s are too long" in text for text in texts)
     assert any("Set window to" in text for text in texts)
 
 
 # Exact by normal modes: 2, 10 and 27 % of the lift off.
 @pytest.mark.parametrize(
-    ("window", "end", "told"),
+    ("window", "end", "expected_status"),
     [(1e-3, 1.0, 0), (4e-3, 1.0, 1), pytest.param(2e-3, 5.0, 1, marks=pytest.mark.full)],
 )
-def test_energy_that_a_staggered_link_makes_is_warned_of(tmp_path, window, end, told):
+def test_energy_that_a_staggered_link_makes_is_warned_of(tmp_path, window, end, expected_status):
     times = f"window={window}", f"end={end}"
     status, results = run(tmp_path / "run", "two_springs", SERIAL, *times, "expect=[]")
-    assert status == told
-    assert ["more work than they gave" in one["text"] for one in results["warnings"]] == [
+    assert status == expected_status
+    assert ["more work than they gave" in warning["text"] for warning in results["warnings"]] == [
         True
-    ] * told
+    ] * expected_status
 
 
 # Velocities are 1, 5 and 24 % off.
 @pytest.mark.parametrize(
-    ("window", "told"), [(4e-5, 0), (1.6e-4, 1), pytest.param(6.4e-4, 1, marks=pytest.mark.full)]
+    ("window", "expected_status"),
+    [(4e-5, 0), (1.6e-4, 1), pytest.param(6.4e-4, 1, marks=pytest.mark.full)],
 )
-def test_windows_longer_than_a_drag_relaxes_are_warned_of(tmp_path, window, told):
+def test_windows_longer_than_a_drag_relaxes_are_warned_of(tmp_path, window, expected_status):
     status, results = run(tmp_path / "run", "dust_in_stream", f"window={window}", "expect=[]")
-    assert status == told
-    assert any("too long: gas.particle" in one["text"] for one in results["warnings"]) == bool(told)
+    assert status == expected_status
+    assert any(
+        "too long: gas.particle" in warning["text"] for warning in results["warnings"]
+    ) == bool(expected_status)
 
 
 @pytest.mark.parametrize("window", [pytest.param(2e-3, marks=pytest.mark.full), 16e-3])
 def test_windows_that_resolve_the_motion_are_not_warned_of(tmp_path, window):
     status, results = run(tmp_path / "run", "two_springs", f"window={window}", "expect=[]")
     assert (status, results["warnings"]) == (0, [])
-    assert all(one["bias"] < 0.01 for one in results["time_errors"])
+    assert all(error["bias"] < 0.01 for error in results["time_errors"])
 
 
 @pytest.mark.slow
@@ -96,7 +101,7 @@ def test_a_look_at_windows_changes_no_bit(tmp_path, monkeypatch, scheme):
     assert compare(tmp_path / "looked", tmp_path / "not") is None
     for key in ("ledger", "repetitions", "windows"):
         assert looked[key] == not_looked[key]
-    steps = [one["timing"]["components"]["lower"]["steps"] for one in (looked, not_looked)]
+    steps = [results["timing"]["components"]["lower"]["steps"] for results in (looked, not_looked)]
     assert steps[0] == steps[1]
 
 
@@ -108,12 +113,12 @@ LOADED = (
 )
 
 
-@pytest.mark.parametrize(("window", "told"), [(1.2e-3, 0), (1.4e-3, 1)])
-def test_a_run_beyond_a_predicted_limit_of_its_scene_is_warned_of(window, told):
+@pytest.mark.parametrize(("window", "count"), [(1.2e-3, 0), (1.4e-3, 1)])
+def test_a_run_beyond_a_predicted_limit_of_its_scene_is_warned_of(window, count):
     """The predicted limit is 1.275 ms at this loading; the scene has others at other loadings."""
     scene = load("dust_in_stream", settings=[*LOADED, f"window={window}", "end=0.03347"])
     warnings = beyond_limits(scene)
-    assert list(warnings) == ["window at a loading of 0.5"] * told
+    assert list(warnings) == ["window at a loading of 0.5"] * count
     assert all("window must be at most 0.001275" in text for text in warnings.values())
 
 

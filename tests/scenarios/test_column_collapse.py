@@ -14,14 +14,14 @@ FEW = (
 @pytest.mark.slow
 def test_the_column_runs_out_between_sand_and_glass_beads(run_scene):
     expectations = run_scene("column_collapse", "--preset", "quick")["expect"]
-    assert [row["met"] for row in expectations] == [True] * 4
+    assert [outcome["met"] for outcome in expectations] == [True] * 4
 
 
 def test_a_settled_column_collapses_in_a_second_run_with_the_bits_of_one_run(tmp_path):
     gate = "components.grains.planes.2.until"
-    whole = run("column_collapse", tmp_path / "whole", *FEW, f"{gate}=0.02", "end=0.06")
+    whole_run = run("column_collapse", tmp_path / "whole", *FEW, f"{gate}=0.02", "end=0.06")
     keeps = ("end=0.02", "output.states=[1e9]")
     first = run("column_collapse", tmp_path / "first", *FEW, f"{gate}=0.02", *keeps)
     begins = (f"{gate}=1e-12", f'begin_from="{first}"', "end=0.04")
-    again = run("column_collapse", tmp_path / "again", *FEW, *begins)
-    assert is_the_end_of(again, whole)
+    second = run("column_collapse", tmp_path / "again", *FEW, *begins)
+    assert is_the_end_of(second, whole_run)

@@ -1,4 +1,4 @@
-"""A dam break meets a fixed box, coarse: when it comes, how it presses, and that it goes round."""
+"""A dam break meets a fixed box, coarse: arrival, pressure, and the flow round the box."""
 
 from collections.abc import Callable
 
@@ -20,7 +20,7 @@ LATE = falls_short("the tip is thinner than a particle, and late; less so with f
 
 
 @pytest.fixture(scope="module")
-def found(run_scene: Run) -> dict:
+def results(run_scene: Run) -> dict:
     return run_scene("dam_break_box", "--preset", "quick", "--set", "output.interval=0.3")
 
 
@@ -33,18 +33,18 @@ def found(run_scene: Run) -> dict:
         pytest.param("p3.arrival", marks=LATE),
     ],
 )
-def test_pressure_is_that_of_the_experiment(found: dict, name: str) -> None:
-    one = found["by_name"][name]
-    assert one["met"], one
+def test_pressure_is_that_of_the_experiment(results: dict, name: str) -> None:
+    outcome = results["by_name"][name]
+    assert outcome["met"], outcome
 
 
-def test_water_reaches_the_box(found: dict) -> None:
-    one = found["by_name"]["front.arrival"]
-    assert one["value"] == pytest.approx(one["reference"], rel=0.2), one
+def test_water_reaches_the_box(results: dict) -> None:
+    outcome = results["by_name"]["front.arrival"]
+    assert outcome["value"] == pytest.approx(outcome["reference"], rel=0.2), outcome
 
 
-def test_water_goes_round_the_box_and_not_into_it(found: dict) -> None:
-    file = found["folder"] / "water.vtkhdf"
+def test_water_goes_round_the_box_and_not_into_it(results: dict) -> None:
+    file = results["folder"] / "water.vtkhdf"
     points = read_step(file, len(times(file)) - 1)[1]["points"]
     depth = np.minimum(points - [2.3955, 0.2985, -1.0], [2.5565, 0.7015, 0.161] - points)
     assert depth.min(axis=1).max() < 0.05  # not a spacing deep

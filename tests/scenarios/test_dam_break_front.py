@@ -12,19 +12,19 @@ Run = Callable[..., dict]
 
 
 @pytest.fixture(scope="module")
-def found(run_scene: Run) -> dict:
+def results(run_scene: Run) -> dict:
     return run_scene("dam_break_front", "--preset", "quick")
 
 
 @pytest.mark.parametrize("name", ["front.martin_moyce", "front.koshizuka_oka"])
-def test_front_is_that_of_the_experiment(found: dict, name: str) -> None:
-    one = found["by_name"][name]
-    assert one["within"] == 0.05
-    assert one["met"], one
+def test_front_is_that_of_the_experiment(results: dict, name: str) -> None:
+    outcome = results["by_name"][name]
+    assert outcome["within"] == 0.05
+    assert outcome["met"], outcome
 
 
-def test_front_goes_on_and_is_never_faster_than_ritters(found: dict) -> None:
-    with Recording(found["folder"]) as recording:
+def test_front_goes_on_and_is_never_faster_than_ritters(results: dict) -> None:
+    with Recording(results["folder"]) as recording:
         times = recording.times("water")
         front = recording.history("water", "front_gauge.position", 0)
     assert front[0] == pytest.approx(1.0)

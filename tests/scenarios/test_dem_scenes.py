@@ -14,17 +14,17 @@ from quintet.coupler.files.recording import Recording
 def run(scene: str, out: Path) -> dict:
     with pytest.raises(SystemExit) as ended:
         main(["run", scene, "--preset", "quick", "--out", str(out)])
-    found = json.loads((out / "results.json").read_text())
-    assert ended.value.code == 0, found["expect"]
-    return found
+    results = json.loads((out / "results.json").read_text())
+    assert ended.value.code == 0, results["expect"]
+    return results
 
 
 @pytest.mark.parametrize(("scene", "count"), [("sphere_rebound", 17), ("block_on_slope", 7)])
 def test_scene_reproduces_its_exact_solutions(scene: str, count: int, tmp_path: Path) -> None:
-    assert [one["met"] for one in run(scene, tmp_path)["expect"]] == [True] * count
+    assert [outcome["met"] for outcome in run(scene, tmp_path)["expect"]] == [True] * count
 
 
-def measured(command: str, out: Path, *options: str) -> dict:
+def run_series(command: str, out: Path, *options: str) -> dict:
     with pytest.raises(SystemExit) as ended:
         main([command, "sphere_rebound", "--out", str(out), *options])
     assert ended.value.code == 0
@@ -32,28 +32,30 @@ def measured(command: str, out: Path, *options: str) -> dict:
 
 
 def test_impacts_are_of_second_order_in_the_step(tmp_path: Path) -> None:
-    found = measured("study", tmp_path)
-    assert [row["status"] for row in found["rows"]] == ["done"] * 5
-    orders = found["kinds"]["time step"]["orders"]
+    study = run_series("study", tmp_path)
+    assert [row["status"] for row in study["rows"]] == ["done"] * 5
+    orders = study["kinds"]["time step"]["orders"]
     damped = [orders[f"restitution_{e}"]["order"] for e in (0.2, 0.4, 0.6, 0.8)]
     assert 1.8 < min(damped) and max(damped) < 2.7
-    assert [row["label"] for row in found["rows"] if row["met"]] == ["0.2 us", "0.1 us", "0.05 us"]
+    assert [row["label"] for row in study["rows"] if row["met"]] == ["0.2 us", "0.1 us", "0.05 us"]
 
 
 def test_an_impact_breaks_where_half_a_step_is_the_inverse_of_its_frequency(tmp_path: Path) -> None:
     """As one contact of Hertz's law does by itself: the energy doubles at 0.89 of 2/ω."""
     coarse = ("--set", "stability.0.accuracy=0.1", "--set", "stability.0.from=1e-5")
-    one = ("--set", "stability.0.against.values=[4.8e10]", "--set", "stability.0.predicted=2e-5")
-    limits = measured("stability", tmp_path, *coarse, *one, "--set", "stability.0.to=4e-5")[
-        "limits"
-    ]
+    one_stiffness = (
+        "--set", "stability.0.against.values=[4.8e10]", "--set", "stability.0.predicted=2e-5",
+    )  # fmt: skip
+    limits = run_series(
+        "stability", tmp_path, *coarse, *one_stiffness, "--set", "stability.0.to=4e-5"
+    )["limits"]
     assert [limit["broke"] for limit in limits] == ["energy"]
     assert limits[0]["holds"] < 0.89 * 2.002e-5 < limits[0]["breaks"]
 
 
 def test_spheres_settle_into_a_random_packing(tmp_path: Path) -> None:
     """Its fraction away from the walls, its overlaps, and the way in which it loses its energy."""
-    assert [one["met"] for one in run("settling_packing", tmp_path)["expect"]] == [True] * 3
+    assert [outcome["met"] for outcome in run("settling_packing", tmp_path)["expect"]] == [True] * 3
     with Recording(tmp_path) as recording:
         x = recording.field("spheres", "motion.position", slice(-1, None))[0]  # (n, 3) m
         speed = np.linalg.norm(recording.field("spheres", "motion.velocity"), axis=2)

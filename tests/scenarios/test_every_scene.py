@@ -19,7 +19,7 @@ LONGEST = 5.0  # minutes that a variant may take to be run here
 
 
 def variants():
-    """Scenes and presets, by their own word not too long: name, or name and preset."""
+    """Yield names, or names and presets, of scenes that state a short enough run time."""
     for name, path in sorted(library().items()):
         scene = tomllib.loads(path.read_text())
         for preset, changes in {"": {}, **scene.get("presets", {})}.items():

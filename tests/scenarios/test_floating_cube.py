@@ -1,4 +1,4 @@
-"""A cube floats, coarse: its period; how deep it lies at five spacings an edge."""
+"""A cube floats, coarse: its period, and its draught at five spacings an edge."""
 
 from collections.abc import Callable
 
@@ -10,24 +10,24 @@ Run = Callable[..., dict]
 
 
 @pytest.fixture(scope="module")
-def found(run_scene: Run) -> dict:
+def results(run_scene: Run) -> dict:
     # One period after the first fifth of a second.
     return run_scene("floating_cube", "--preset", "quick", "--set", "end=1.2")
 
 
 @pytest.mark.slow
-def test_cube_heaves_with_the_period_of_linear_theory(found: dict) -> None:
-    (link,) = found["ledger"]["links"]
+def test_cube_heaves_with_the_period_of_linear_theory(results: dict) -> None:
+    (link,) = results["ledger"]["links"]
     assert link["momentum_residual"] < 1e-12
-    one = found["by_name"]["period"]
-    assert one["met"], one
+    outcome = results["by_name"]["period"]
+    assert outcome["met"], outcome
 
 
 @pytest.mark.slow
 @pytest.mark.xfail(strict=True, raises=AssertionError, reason="5 % at five spacings an edge")
-def test_cube_comes_to_rest_as_deep_as_it_weighs(found: dict) -> None:
-    one = found["by_name"]["draught"]
-    assert one["met"], one
+def test_cube_comes_to_rest_as_deep_as_it_weighs(results: dict) -> None:
+    outcome = results["by_name"]["draught"]
+    assert outcome["met"], outcome
 
 
 def test_reference_is_that_of_linear_theory_and_of_prisms_in_infinite_water() -> None:

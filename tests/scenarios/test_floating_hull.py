@@ -15,18 +15,18 @@ Run = Callable[..., dict]
 @pytest.mark.slow
 def test_hull_comes_to_rest_where_it_displaces_its_mass_of_water(run_scene: Run) -> None:
     swing = ("--set", "end=0.9", "--set", "expect.0.begin=0.25")  # s, one, not the second
-    found = run_scene("floating_hull", "--preset", "quick", *swing)
-    (link,) = found["ledger"]["links"]
+    results = run_scene("floating_hull", "--preset", "quick", *swing)
+    (link,) = results["ledger"]["links"]
     assert link["momentum_residual"] < 1e-12
-    assert found["by_name"]["displaced"]["met"], found["by_name"]["displaced"]
+    assert results["by_name"]["displaced"]["met"], results["by_name"]["displaced"]
 
 
 def test_displaced_volume_of_triangles_is_exact() -> None:
     cube = np.asarray(trimesh.creation.box((2.0, 3.0, 4.0)).triangles)
     assert hull.displaced(cube, -0.5) == pytest.approx((9.0, 6.0), rel=1e-12)
     cone = trimesh.creation.cone(radius=1.0, height=2.0, sections=24)  # its tip above
-    whole, half = hull.displaced(np.asarray(cone.triangles), 2.0), cone.volume / 8.0
-    assert whole[0] == pytest.approx(cone.volume, rel=1e-12)
+    immersed, half = hull.displaced(np.asarray(cone.triangles), 2.0), cone.volume / 8.0
+    assert immersed[0] == pytest.approx(cone.volume, rel=1e-12)
     below = hull.displaced(np.asarray(cone.triangles), 1.0)[0]
     assert cone.volume - below == pytest.approx(half, rel=1e-12)
 

@@ -13,11 +13,11 @@ Run = Callable[..., dict]
 def test_square_heaves_and_comes_to_rest_as_linear_theory_and_archimedes_say(
     run_scene: Run,
 ) -> None:
-    found = run_scene("floating_square", "--preset", "quick")
-    (link,) = found["ledger"]["links"]
+    results = run_scene("floating_square", "--preset", "quick")
+    (link,) = results["ledger"]["links"]
     assert link["momentum_residual"] < 1e-12
     for name in ("draught", "period"):
-        assert found["by_name"][name]["met"], found["by_name"][name]
+        assert results["by_name"][name]["met"], results["by_name"][name]
 
 
 def test_reference_is_that_of_a_rectangle_in_infinite_water() -> None:
@@ -33,5 +33,5 @@ def test_two_dimensions_beside_three_are_refused_before_anything_starts(
     with pytest.raises(SystemExit) as ended:
         main(["check", "floating_square", "--set", "components.water.dimensions=3"])
     assert ended.value.code == 2
-    said = " ".join(capsys.readouterr().err.split())
-    assert "both sides must have two dimensions or both three; square has two, water" in said
+    message = " ".join(capsys.readouterr().err.split())
+    assert "both sides must have two dimensions or both three; square has two, water" in message

@@ -8,20 +8,20 @@ Run = Callable[..., dict]
 
 
 @pytest.fixture(scope="module")
-def found(run_scene: Run) -> dict:
+def results(run_scene: Run) -> dict:
     return run_scene("flyer", "--preset", "quick")
 
 
-def test_shock_release_and_spall_are_where_the_material_has_them(found: dict) -> None:
-    assert all(one["met"] for one in found["expect"]), found["expect"]
+def test_shock_release_and_spall_are_where_the_material_has_them(results: dict) -> None:
+    assert all(outcome["met"] for outcome in results["expect"]), results["expect"]
 
 
-def test_energy_is_kept_through_shock_release_and_spall(found: dict) -> None:
-    assert found["energy_gained"] < 1e-3
+def test_energy_is_kept_through_shock_release_and_spall(results: dict) -> None:
+    assert results["energy_gained"] < 1e-3
 
 
 @pytest.mark.full
 @pytest.mark.parametrize("preset", ["steel", "fast", "thick"])
 def test_other_materials_and_speeds_are_as_close(run_scene: Run, preset: str) -> None:
-    found = run_scene("flyer", "--preset", preset)
-    assert all(one["met"] for one in found["expect"]), found["expect"]
+    results = run_scene("flyer", "--preset", preset)
+    assert all(outcome["met"] for outcome in results["expect"]), results["expect"]

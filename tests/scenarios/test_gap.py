@@ -18,12 +18,12 @@ def test_films_mend_narrow_gaps_and_leave_those_that_particles_fill(
     films = "components.water.boundary.lubrication_films"
     settings = ("--preset", "quick", "--set", "output.interval=0.1")
     runs = [run_scene("gap", *settings, "--set", f"{films}={on}") for on in ("true", "false")]
-    found, alone = (run["by_name"] for run in runs)
-    assert len(found) == 10
-    assert all(one["met"] for one in found.values()), found
+    with_films, without_films = (run["by_name"] for run in runs)
+    assert len(with_films) == 10
+    assert all(outcome["met"] for outcome in with_films.values()), with_films
     for name in WIDE:  # the first is as wide as films reach, to rounding
-        assert found[name]["value"] == pytest.approx(alone[name]["value"], rel=1e-12)
-    assert not any(alone[name]["met"] for name in ("gap_0.1", "gap_0.25", "gap_0.5"))
+        assert with_films[name]["value"] == pytest.approx(without_films[name]["value"], rel=1e-12)
+    assert not any(without_films[name]["met"] for name in ("gap_0.1", "gap_0.25", "gap_0.5"))
     capsys.readouterr()
     main([str(run["folder"]) for run in runs])
     rows = [line.split("|") for line in capsys.readouterr().out.splitlines()]

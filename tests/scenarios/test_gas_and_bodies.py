@@ -10,7 +10,7 @@ from quintet.scenarios.moving_sphere.compare import Flight, flight
 
 Run = Callable[..., dict]
 Fly = Callable[[str], Flight]
-# A body fixed in a stream, and the same with half or all of the relative velocity of its own.
+# Presets of a body fixed in a stream, and of one that moves at half or all of the relative speed.
 SAME = {
     "10 spacings on a radius": ("fixed", ("half", "")),
     "20 spacings on a radius": ("fine_fixed", ("fine_half", "fine")),
@@ -21,17 +21,17 @@ SAME = {
 
 @pytest.fixture(scope="module")
 def fly(run_scene: Run) -> Fly:
-    """Run a preset of `moving_sphere` once; return what its body felt."""
-    known: dict[str, Flight] = {}
+    """Run each preset of `moving_sphere` once; return the flight of its body."""
+    flights: dict[str, Flight] = {}
 
-    def made(preset: str) -> Flight:
-        if preset not in known:
-            found = run_scene("moving_sphere", *(("--preset", preset) if preset else ()))
-            assert all(one["met"] for one in found["expect"]), found["expect"]
-            known[preset] = flight(found["folder"])
-        return known[preset]
+    def run_preset(preset: str) -> Flight:
+        if preset not in flights:
+            results = run_scene("moving_sphere", *(("--preset", preset) if preset else ()))
+            assert all(outcome["met"] for outcome in results["expect"]), results["expect"]
+            flights[preset] = flight(results["folder"])
+        return flights[preset]
 
-    return made
+    return run_preset
 
 
 def test_driven_bodies_of_scenes_are_described_by_their_partner_alone() -> None:
@@ -81,7 +81,7 @@ def test_a_driven_body_takes_its_place_and_size_from_its_partner() -> None:
 
 
 @pytest.mark.parametrize(
-    ("settings", "said"),
+    ("settings", "message"),
     [
         (driving(", centre = [-1.0, 0.0, 0.0]"), r"bodies.0.centre: .* Leave it out"),
         ([*driving(""), "links=[]"], "must have centre and radius, .* stated by its partner"),
@@ -90,9 +90,9 @@ def test_a_driven_body_takes_its_place_and_size_from_its_partner() -> None:
     ],
 )  # fmt: skip
 def test_driven_bodies_that_are_described_twice_or_never_are_refused(
-    settings: list[str], said: str
+    settings: list[str], message: str
 ) -> None:
-    with pytest.raises(SceneError, match=said):
+    with pytest.raises(SceneError, match=message):
         load("shock_layer_particle", settings=settings)
 
 
@@ -105,19 +105,22 @@ def test_a_mistake_of_a_partner_is_reported_alone() -> None:
 @pytest.mark.full
 @pytest.mark.parametrize("name", SAME)
 def test_what_a_body_feels_does_not_depend_on_who_moves(fly: Fly, name: str) -> None:
-    preset, others = SAME[name]
-    fixed = fly(preset)
-    for one in (fixed, *map(fly, others)):
-        assert one.error < 0.005 * one.mean
-        assert one.mean == pytest.approx(fixed.mean, rel=0.02)
-        assert max(one.pressure_off(fixed)) < 0.02
+    fixed_preset, moving_presets = SAME[name]
+    fixed = fly(fixed_preset)
+    for result in (fixed, *map(fly, moving_presets)):
+        assert result.error < 0.005 * result.mean
+        assert result.mean == pytest.approx(fixed.mean, rel=0.02)
+        assert max(result.pressure_off(fixed)) < 0.02
 
 
 @pytest.mark.full
 def test_a_finer_cloud_makes_less_of_a_difference_between_moving_and_fixed(fly: Fly) -> None:
     def off(name: str) -> float:
-        preset, others = SAME[name]
-        return max(abs(fly(one).mean / fly(preset).mean - 1.0) for one in others)
+        fixed_preset, moving_presets = SAME[name]
+        return max(
+            abs(fly(moving_preset).mean / fly(fixed_preset).mean - 1.0)
+            for moving_preset in moving_presets
+        )
 
     assert off("20 spacings on a radius") < off("10 spacings on a radius") < 0.006
 
@@ -129,20 +132,20 @@ def test_a_body_that_moves_costs_a_node_little_more_than_one_that_is_fixed(fly: 
 
 @pytest.mark.full
 def test_half_of_the_way_is_enough_for_a_first_look(run_scene: Run) -> None:
-    found = run_scene("moving_sphere", "--preset", "quick")
-    assert all(one["met"] for one in found["expect"]), found["expect"]
+    results = run_scene("moving_sphere", "--preset", "quick")
+    assert all(outcome["met"] for outcome in results["expect"]), results["expect"]
 
 
 @pytest.mark.full
 def test_a_particle_that_crosses_a_shock_layer_drives_a_ring_of_heat_outwards(
     run_scene: Run,
 ) -> None:
-    found = run_scene("shock_layer_particle")
-    assert all(one["met"] for one in found["expect"]), found["expect"]
-    assert all(one["momentum_residual"] <= 1e-12 for one in found["ledger"]["links"])
+    results = run_scene("shock_layer_particle")
+    assert all(outcome["met"] for outcome in results["expect"]), results["expect"]
+    assert all(link["momentum_residual"] <= 1e-12 for link in results["ledger"]["links"])
 
 
 @pytest.mark.full
 def test_heat_flux_at_a_sphere_is_that_of_fay_and_riddell(run_scene: Run) -> None:
-    found = run_scene("shock_layer_particle", "--preset", "alone")
-    assert all(one["met"] for one in found["expect"]), found["expect"]
+    results = run_scene("shock_layer_particle", "--preset", "alone")
+    assert all(outcome["met"] for outcome in results["expect"]), results["expect"]

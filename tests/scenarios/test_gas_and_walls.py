@@ -12,13 +12,13 @@ from quintet.components.meshless_gas.point_particles.laws import LOTH, drag_fact
 
 Run = Callable[..., dict]
 SPHERE = tomllib.loads(Path(sphere_drag.__file__).with_name("scene.toml").read_text())
-CASES = {one["label"]: one["settings"] for one in SPHERE["presets"]["drag"]["study"]}
+CASES = {case["label"]: case["settings"] for case in SPHERE["presets"]["drag"]["study"]}
 
 
 @pytest.mark.parametrize("scene", ["blunt_sphere", "couette"])
 def test_walls_do_to_a_gas_as_laws_say(run_scene: Run, scene: str) -> None:
-    found = run_scene(scene, "--preset", "quick")
-    assert all(one["met"] for one in found["expect"]), found["expect"]
+    results = run_scene(scene, "--preset", "quick")
+    assert all(outcome["met"] for outcome in results["expect"]), results["expect"]
 
 
 @pytest.mark.full
@@ -34,22 +34,22 @@ def test_walls_do_to_a_gas_as_laws_say(run_scene: Run, scene: str) -> None:
     ],
 )
 def test_finer_clouds_come_nearer(run_scene: Run, scene: str, preset: str) -> None:
-    found = run_scene(scene, *(() if preset == "standard" else ("--preset", preset)))
-    assert all(one["met"] for one in found["expect"]), found["expect"]
+    results = run_scene(scene, *(() if preset == "standard" else ("--preset", preset)))
+    assert all(outcome["met"] for outcome in results["expect"]), results["expect"]
 
 
 @pytest.mark.full
 def test_a_sphere_in_space_has_the_shock_of_an_axisymmetric_one(run_scene: Run) -> None:
     space = run_scene("blunt_sphere", "--preset", "cap")
-    assert all(one["met"] for one in space["expect"]), space["expect"]
-    same = (  # as many layers, nodes as far apart along the wall
+    assert all(outcome["met"] for outcome in space["expect"]), space["expect"]
+    same_cloud = (  # as many layers, nodes as far apart along the wall
         "--set", "components.gas.sphere.points_around=17",
         "--set", "components.gas.sphere.sector=0.8",
     )  # fmt: skip
-    plane = run_scene("blunt_sphere", "--preset", "quick", *same)
+    plane = run_scene("blunt_sphere", "--preset", "quick", *same_cloud)
     for name in ("standoff", "pitot"):
-        one, other = space["by_name"][name]["value"], plane["by_name"][name]["value"]
-        assert one == pytest.approx(other, rel=0.02)
+        in_space, in_plane = space["by_name"][name]["value"], plane["by_name"][name]["value"]
+        assert in_space == pytest.approx(in_plane, rel=0.02)
 
 
 @pytest.mark.full
@@ -70,16 +70,19 @@ def test_a_sphere_in_space_has_the_shock_of_an_axisymmetric_one(run_scene: Run) 
     ids=["jitter of 0.6", "M = 20"],
 )  # fmt: skip
 def test_a_uniform_stream_may_strike_a_sphere_at_once(run_scene: Run, options: list[str]) -> None:
-    found = run_scene("blunt_sphere", "--preset", "quick", *options)
-    assert found["by_name"]["pitot"]["value"] == pytest.approx(1.0, abs=0.03)
+    results = run_scene("blunt_sphere", "--preset", "quick", *options)
+    assert results["by_name"]["pitot"]["value"] == pytest.approx(1.0, abs=0.03)
 
 
 @pytest.mark.full
 @pytest.mark.parametrize("case", ["M2 Re1000", "M2 Re100", "M6 Re300"])
 def test_drag_of_a_sphere_is_within_8_percent_of_loths(run_scene: Run, case: str) -> None:
-    given = [f"{path}={json.dumps(value)}" for path, value in CASES[case].items()]
-    found = run_scene("blunt_sphere", "--preset", "drag", *(p for g in given for p in ("--set", g)))
-    assert found["by_name"]["drag"]["met"], found["expect"]
+    settings = [f"{path}={json.dumps(value)}" for path, value in CASES[case].items()]
+    results = run_scene(
+        "blunt_sphere", "--preset", "drag",
+        *(word for setting in settings for word in ("--set", setting)),
+    )  # fmt: skip
+    assert results["by_name"]["drag"]["met"], results["expect"]
 
 
 def test_drags_are_compared_with_the_law_of_loth() -> None:

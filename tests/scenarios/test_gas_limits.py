@@ -1,4 +1,4 @@
-"""Limits of stability of gas and of what flies in it: found where theory predicts them."""
+"""Limits of stability of gas and of bodies in it lie where theory predicts them."""
 
 import json
 import tomllib
@@ -29,19 +29,19 @@ LIMITS = {
 @pytest.mark.full
 @pytest.mark.parametrize("name", LIMITS)
 def test_limits_are_found_where_theory_predicts_them(name: str, tmp_path: Path) -> None:
-    number, least, most = LIMITS[name]
+    number, lowest, highest = LIMITS[name]
     scene = name.split()[0]
-    told = tomllib.loads((SCENES / scene / "scene.toml").read_text())["stability"]
-    others = [k for k in range(len(told)) if k != number]
+    tables = tomllib.loads((SCENES / scene / "scene.toml").read_text())["stability"]
+    other_limits = [k for k in range(len(tables)) if k != number]
     words = ["stability", scene, "--out", str(tmp_path / "runs"), "--json", str(tmp_path / "found")]
-    for k in others:  # both ends of the others, and no more
+    for k in other_limits:  # their two ends alone
         words += ["--set", f"stability.{k}.accuracy=0.5"]
     with pytest.raises(SystemExit) as ended:
         main(words)
     assert ended.value.code == 0
     limits = json.loads((tmp_path / "found").read_text())["limits"]
-    mine = [one for one in limits if one["name"] == told[number]["name"]]
-    assert mine and all(least < one["ratio"] < most for one in mine), mine
+    matching = [limit for limit in limits if limit["name"] == tables[number]["name"]]
+    assert matching and all(lowest < limit["ratio"] < highest for limit in matching), matching
 
 
 def test_a_light_sphere_bears_windows_of_twice_its_radius_over_sound_times_its_density() -> None:

@@ -14,21 +14,21 @@ LOADED = 3.93e-6  # s, end of the pulse
 
 
 def test_nothing_is_warned_of_before_the_wave_has_reached_the_particles(run_scene: Run) -> None:
-    """Their energy, rounding until then, is no matter."""
+    """Until then the energy of the particles is rounding error."""
     settings = "--set", "end=6e-6", "--set", "expect=[]"
-    found = run_scene("glued_bar", "--transport", "memory", *settings)
-    assert found["warnings"] == []
+    results = run_scene("glued_bar", "--transport", "memory", *settings)
+    assert results["warnings"] == []
 
 
 def test_a_wave_passes_the_glue_both_ways_with_little_echo(run_scene: Run) -> None:
-    found = run_scene("glued_bar", "--transport", "memory")
+    results = run_scene("glued_bar", "--transport", "memory")
     for name in ("echo.in_elements", "echo.in_particles"):
-        assert found["by_name"][name]["met"], found["by_name"][name]
-    (link,) = found["ledger"]["links"]
+        assert results["by_name"][name]["met"], results["by_name"][name]
+    (link,) = results["ledger"]["links"]
     assert link["momentum_residual"] <= 1e-12
     assert link["kinematic_residual"] <= 1e-12
-    assert found["warnings"] == []  # what runs ahead of the wave decides nothing
-    assert found["energy_gained"] < 0.03  # the work of the pulse is none that is made
+    assert results["warnings"] == []  # precursors of the wave cause none
+    assert results["energy_gained"] < 0.03  # without the work of the pulse
 
 
 def test_other_ratios_of_steps_are_refused_with_the_reason(
@@ -37,8 +37,8 @@ def test_other_ratios_of_steps_are_refused_with_the_reason(
     with pytest.raises(SystemExit) as ended:
         main(["check", "glued_bar", "--set", "links.0.substeps=2"])
     assert ended.value.code == 2
-    said = " ".join(capsys.readouterr().err.split())
-    assert "substeps must be 1; found 2: glue is stable only when both sides step once" in said
+    message = " ".join(capsys.readouterr().err.split())
+    assert "substeps must be 1; found 2: glue is stable only when both sides step once" in message
 
 
 @pytest.mark.full
@@ -47,8 +47,8 @@ def test_bits_are_the_same_over_all_transports(
     run_scene: Run, capsys: pytest.CaptureFixture[str], transport: str
 ) -> None:
     folders = [
-        str(run_scene("glued_bar", "--transport", one, "--set", "end=4e-6")["folder"])
-        for one in ("memory", transport)
+        str(run_scene("glued_bar", "--transport", kind, "--set", "end=4e-6")["folder"])
+        for kind in ("memory", transport)
     ]
     with pytest.raises(SystemExit) as ended:
         main(["diff", *folders])
@@ -60,13 +60,13 @@ def test_bits_are_the_same_over_all_transports(
 def test_energy_of_the_coupled_bar_stays(run_scene: Run, transits: int) -> None:
     """Elements and particles of a step of their own size each, one exchange for every step."""
     settings = ["output.totals=2e-6", "output.record=false", f"end={transits * TRANSIT}"]
-    options = [part for one in settings for part in ("--set", one)]
-    found = run_scene("glued_bar", "--transport", "memory", *options)
+    options = [word for setting in settings for word in ("--set", setting)]
+    results = run_scene("glued_bar", "--transport", "memory", *options)
     energy: dict[float, float] = {}
-    with (found["folder"] / "ledger.csv").open() as file:
+    with (results["folder"] / "ledger.csv").open() as file:
         for row in csv.DictReader(file):
             if row["internal"]:
                 time, parts = float(row["time"]), ("kinetic", "potential", "internal")
-                energy[time] = energy.get(time, 0.0) + sum(float(row[one]) for one in parts)
-    known = np.array([value for time, value in sorted(energy.items()) if time > LOADED])
-    assert np.abs(known / known[0] - 1.0).max() < 0.01
+                energy[time] = energy.get(time, 0.0) + sum(float(row[part]) for part in parts)
+    energies = np.array([value for time, value in sorted(energy.items()) if time > LOADED])
+    assert np.abs(energies / energies[0] - 1.0).max() < 0.01

@@ -1,4 +1,4 @@
-"""A bar of elements and mass points; and that all bars go on with the same bits."""
+"""A bar of elements and mass points; all bars resume with the same bits."""
 
 import json
 import shutil
@@ -31,25 +31,25 @@ def settings(scene: str) -> list[str]:
 
 
 def run(folder: Path, scene: str, *arguments: str) -> Path:
-    given = [part for one in settings(scene) for part in ("--set", one)]
+    options = [word for setting in settings(scene) for word in ("--set", setting)]
     with pytest.raises(SystemExit) as ended:
-        main(["run", scene, *given, *arguments, "--out", str(folder)])
+        main(["run", scene, *options, *arguments, "--out", str(folder)])
     assert ended.value.code in (0, 1)  # too short for what the scene expects
     return folder
 
 
 def test_a_bar_of_elements_and_points_has_the_temperature_between_them(tmp_path: Path) -> None:
-    """Of short exchanges, so that noise is wide; every joule that leaves one reaches the other."""
+    """Exchanges are short and noise is wide; the heat that leaves one side reaches the other."""
     with pytest.raises(SystemExit) as ended:
         main([
             "run", "hot_bar_coupled", "--preset", "quick", "--transport", "memory",
             "--out", str(tmp_path / "run"),
         ])  # fmt: skip
     assert ended.value.code == 0
-    found = json.loads((tmp_path / "run" / "results.json").read_text())
-    by_name = {one["name"]: one for one in found["expect"]}
+    results = json.loads((tmp_path / "run" / "results.json").read_text())
+    by_name = {outcome["name"]: outcome for outcome in results["expect"]}
     assert by_name["temperature between"]["met"] and by_name["heat flow"]["met"]
-    assert found["ledger"]["links"][0]["heat_residual"] <= 1e-12
+    assert results["ledger"]["links"][0]["heat_residual"] <= 1e-12
     with Recording(tmp_path / "run") as recording:
         between = recording.field("elements", "node_temperature.temperature")[1:].mean(axis=1)
     assert reached(between) <= 8  # exchanges
@@ -57,7 +57,7 @@ def test_a_bar_of_elements_and_points_has_the_temperature_between_them(tmp_path:
 
 
 def test_what_is_reached_is_told_apart_from_noise() -> None:
-    """Of an error that halves from exchange to exchange, in noise with a deviation of one."""
+    """For an error that halves at every exchange, in noise of standard deviation one."""
     noise = np.random.default_rng(3).normal(size=200)
     values = 50.0 + 64.0 * 0.5 ** np.arange(24) + noise[:24]
     assert 4 <= reached(values) <= 7  # the error is 8 and 1 there
@@ -69,15 +69,15 @@ def test_from_a_snapshot_a_bar_goes_on_with_the_same_bits(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, scene: str
 ) -> None:
     monkeypatch.setattr(snapshots, "remove", lambda paths: None)
-    first, again = tmp_path / "first", tmp_path / "again"
-    made = load(scene, settings=settings(scene), transport="memory")
-    make_folder(made, first)
-    assert simulate(made, first) in (0, 1)
-    shutil.copytree(first, again)
-    kept = sorted(again.glob("snapshot-*.h5"), key=snapshots.window_of)
-    simulate(load(scene, settings=settings(scene), transport="memory"), again, kept[0])
-    assert compare(first, again) is None
-    assert (first / "ledger.csv").read_bytes() == (again / "ledger.csv").read_bytes()
+    first, resumed = tmp_path / "first", tmp_path / "again"
+    loaded = load(scene, settings=settings(scene), transport="memory")
+    make_folder(loaded, first)
+    assert simulate(loaded, first) in (0, 1)
+    shutil.copytree(first, resumed)
+    files = sorted(resumed.glob("snapshot-*.h5"), key=snapshots.window_of)
+    simulate(load(scene, settings=settings(scene), transport="memory"), resumed, files[0])
+    assert compare(first, resumed) is None
+    assert (first / "ledger.csv").read_bytes() == (resumed / "ledger.csv").read_bytes()
 
 
 @pytest.mark.full

@@ -19,9 +19,9 @@ STRUCK = ("--set", "end=0.15")  # s
 def run(out: Path, *options: str, status: int = 0) -> dict:
     with pytest.raises(SystemExit) as ended:
         main(["run", SCENE, "--out", str(out), *options])
-    found = json.loads((out / "results.json").read_text())
-    assert ended.value.code == status, found
-    return found
+    results = json.loads((out / "results.json").read_text())
+    assert ended.value.code == status, results
+    return results
 
 
 @pytest.fixture(scope="module")
@@ -32,7 +32,7 @@ def live(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict]:
 
 @pytest.fixture(scope="module")
 def struck(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Until the water has struck the cube, in one process."""
+    """Folder of a run until the water has struck the cube, in one process."""
     out = tmp_path_factory.mktemp("struck")
     (link,) = run(out, *STRUCK)["ledger"]["links"]
     assert link["impulse"][0] > 0.0
@@ -56,11 +56,11 @@ def test_momentum_closes_at_every_ratio(tmp_path: Path, window: float, ratio: in
     # The courant number sets the fluid's step, and with it how often it steps in a window.
     # In windows of fifty steps the coupling makes energy, and is told to be unstable.
     status = 1 if ratio == 50 else 0
-    found = run(tmp_path, "--set", f"window={window}", "--set", "end=0.2", status=status)
-    assert ("stability" in [one["subject"] for one in found["warnings"]]) == (status == 1)
-    steps = found["timing"]["components"]["water"]["steps"]
-    assert steps / found["windows"] == pytest.approx(ratio, rel=0.3)
-    (link,) = found["ledger"]["links"]
+    results = run(tmp_path, "--set", f"window={window}", "--set", "end=0.2", status=status)
+    assert ("stability" in [warning["subject"] for warning in results["warnings"]]) == (status == 1)
+    steps = results["timing"]["components"]["water"]["steps"]
+    assert steps / results["windows"] == pytest.approx(ratio, rel=0.3)
+    (link,) = results["ledger"]["links"]
     assert link["impulse"][0] > 0.0
     assert link["momentum_residual"] < 1e-12
 
@@ -83,16 +83,16 @@ def test_threads_change_no_bit(struck: Path, tmp_path: Path) -> None:
 
 
 def test_a_replayed_cube_gives_the_water_the_same_bits(struck: Path, tmp_path: Path) -> None:
-    asked = 'output.fields=["water.surface_load.force"]'  # which no link reads now
-    run(tmp_path, *STRUCK, "--swap", f"cube=replay@{struck}", "--set", asked)
-    with Recording(struck) as one, Recording(tmp_path) as other:
+    setting = 'output.fields=["water.surface_load.force"]'  # which no link reads now
+    run(tmp_path, *STRUCK, "--swap", f"cube=replay@{struck}", "--set", setting)
+    with Recording(struck) as original, Recording(tmp_path) as replayed:
         force = "surface_load.force"
-        assert one.field("water", force).tobytes() == other.field("water", force).tobytes()
+        assert original.field("water", force).tobytes() == replayed.field("water", force).tobytes()
 
 
 def test_a_prescribed_cube_runs(tmp_path: Path) -> None:
-    found = run(tmp_path, *STRUCK, "--swap", "cube=prescribed")
-    assert found["status"] == "done"
+    results = run(tmp_path, *STRUCK, "--swap", "cube=prescribed")
+    assert results["status"] == "done"
 
 
 def test_views_are_left_for_every_component(live: tuple[Path, dict]) -> None:
@@ -112,5 +112,5 @@ def test_pyvista_opens_all_views_at_all_steps(live: tuple[Path, dict]) -> None:
             assert reader.GetTimeValue() == time and mesh.n_points and mesh.n_cells
             assert list(mesh.field_data["scene"]) == [read_scene(path)] == ["small_dam"]
             if path.name == "water.vtkhdf":
-                told = "points m; velocity m/s; density kg/m3; pressure Pa"
-                assert list(mesh.field_data["units"]) == [told]
+                units = "points m; velocity m/s; density kg/m3; pressure Pa"
+                assert list(mesh.field_data["units"]) == [units]

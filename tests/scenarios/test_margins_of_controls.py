@@ -32,11 +32,11 @@ def scenes():
 def test_every_expectation_has_a_control_that_its_tolerance_rejects(scenes, name):
     scene = tomllib.loads(library()[name].read_text())
     expected = {expectation["name"]: expectation for expectation in scene["expect"]}
-    named = {(c["name"], rejected) for c in scene["control"] for rejected in c["rejects"]}
-    assert {rejected for _, rejected in named} == set(expected)
+    controls = {(c["name"], rejected) for c in scene["control"] for rejected in c["rejects"]}
+    assert {rejected for _, rejected in controls} == set(expected)
     assert (name in scenes) != (name in NOT_RUN)
     rows = scenes.get(name, [])
-    assert {(row["control"], row["expectation"]) for row in rows} in (named, set())
+    assert {(row["control"], row["expectation"]) for row in rows} in (controls, set())
     for row in rows:
         expectation = expected[row["expectation"]]
         assert row["verdict"] == "rejected" and row["within"] == expectation["within"], row

@@ -40,12 +40,12 @@ SETTINGS = {
 
 
 def scene(folder, name, shape):
-    """A scene beside its mesh: the one of the bar, as far as its first expectation."""
+    """Write the scene of the bar, without its expectations, beside its mesh."""
     text = SCENE.read_text().partition("[[expect]]")[0]
-    head, _, rest = text.partition('shape = "cylinder"')
-    given = f"{shape}\n[output]" + rest.partition("[output]")[2]
+    head, _, tail = text.partition('shape = "cylinder"')
+    body = f"{shape}\n[output]" + tail.partition("[output]")[2]
     file = folder / f"{name}.toml"
-    file.write_text(head + given)
+    file.write_text(head + body)
     assert tomllib.loads(file.read_text())["components"]["bar"]["parts"]
     return file
 
@@ -61,16 +61,16 @@ def toml(value):
     return f'"{value}"' if isinstance(value, str) else str(value).translate(BRACKETS)
 
 
-def cells(made):
-    return [("hexahedron", made.corner)]
+def cells(bar_mesh):
+    return [("hexahedron", bar_mesh.corner)]
 
 
-def keywords(made, form):
+def keywords(bar_mesh, form):
     """Text of an LS-DYNA file with a mesh that moves downwards, its lines in a form."""
     text = ["*KEYWORD", "*NODE"]
-    text += [form(k + 1, *place) for k, place in enumerate(made.node.tolist())]
+    text += [form(k + 1, *place) for k, place in enumerate(bar_mesh.node.tolist())]
     text += ["*ELEMENT_SOLID"]
-    for k, corner in enumerate(made.corner.tolist()):
+    for k, corner in enumerate(bar_mesh.corner.tolist()):
         text += [",".join(map(str, (k + 1, 1, *(node + 1 for node in corner))))]
     text += ["*PART", "bar", "1,1,1", "*INITIAL_VELOCITY", "0", f"0,0,{SPEED}", "*END", ""]
     return "\n".join(text)
@@ -80,20 +80,20 @@ def keywords(made, form):
 def runs(tmp_path_factory):
     """Folder with a scene for each format, and a function that runs one."""
     folder = tmp_path_factory.mktemp("bars")
-    made = mesh([Part(material="42CrMo4", **BAR)])
+    bar_mesh = mesh([Part(material="42CrMo4", **BAR)])
     for name in ("bar.inp", "bar.msh", "bar.vtk"):
-        meshio.Mesh(made.node, cells(made)).write(folder / name)
-    free = keywords(made, lambda number, *place: ",".join([str(number), *map(repr, place)]))
+        meshio.Mesh(bar_mesh.node, cells(bar_mesh)).write(folder / name)
+    free = keywords(bar_mesh, lambda number, *place: ",".join([str(number), *map(repr, place)]))
     (folder / "bar.k").write_text(free)
     columns = "{:8d}{:16.9e}{:16.9e}{:16.9e}".format
-    (folder / "columns.key").write_text(keywords(made, columns))
-    done = {}
+    (folder / "columns.key").write_text(keywords(bar_mesh, columns))
+    folders = {}
 
     def run(name):
-        if name not in done:
+        if name not in folders:
             file = built_in(folder) if name == "built_in" else of_file(folder, name)
-            done[name] = quintet.run(file, settings=SETTINGS, out=folder / f"run_{name}").folder
-        return done[name]
+            folders[name] = quintet.run(file, settings=SETTINGS, out=folder / f"run_{name}").folder
+        return folders[name]
 
     return run
 

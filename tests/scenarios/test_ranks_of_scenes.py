@@ -55,7 +55,7 @@ def test_a_scene_gives_the_same_bits_on_any_number_of_ranks(
 
 @pytest.mark.mpi
 @pytest.mark.parametrize(
-    ("before", "after"),
+    ("ranks_before", "ranks_after"),
     [
         (2, 1),
         pytest.param(2, 3, marks=pytest.mark.full),
@@ -63,15 +63,15 @@ def test_a_scene_gives_the_same_bits_on_any_number_of_ranks(
     ],
 )
 def test_a_snapshot_of_a_scene_goes_on_with_any_number_of_ranks(
-    tmp_path: Path, of_one_rank: Path, before: int, after: int
+    tmp_path: Path, of_one_rank: Path, ranks_before: int, ranks_after: int
 ) -> None:
     scene, folder = of_one_rank.name, tmp_path / "run"
     interval = SHORT[scene][1]["window"]
-    started = Started(Path(scene), *words(scene, "mpi", before, interval), out=folder)
+    started = Started(Path(scene), *words(scene, "mpi", ranks_before, interval), out=folder)
     started.wait_until(lambda: list(folder.glob("snapshot-*.h5")), seconds=100.0)
     started.process.terminate()
     assert started.wait() == 130, started.err
-    run(scene, *words(scene, "mpi", after, interval), "--resume", str(folder))
+    run(scene, *words(scene, "mpi", ranks_after, interval), "--resume", str(folder))
     assert compare(of_one_rank, folder) is None
 
 
@@ -82,5 +82,5 @@ def test_a_range_that_needs_all_pairs_refuses_several_ranks(tmp_path: Path, capf
     with pytest.raises(SystemExit) as ended:
         main(["run", "hot_bar", "--transport", "mpi", "--out", str(tmp_path / "run"), *pairs])
     assert ended.value.code == 2
-    said = capfd.readouterr().err
-    assert "damping: the range all needs every pair of points" in said and "Take one rank" in said
+    text = capfd.readouterr().err
+    assert "damping: the range all needs every pair of points" in text and "Take one rank" in text

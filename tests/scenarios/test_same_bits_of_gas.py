@@ -15,7 +15,7 @@ from quintet.coupler.scene.read import load
 PLAIN = ("output.pictures=[]", "expect=[]", "study=[]", "stability=[]")
 LAUNCH = "components.particle.spheres.0.launch"
 SPHERE = "components.gas.sphere"
-# Preset, end and window [s], and what else makes a run short; a third of it lies before a snapshot.
+# Preset, end and window [s], and further settings of a short run; the first snapshot is at 0.3 end.
 SCENES = {
     "shock_tube": ("quick", 0.06, 5e-3, ()),
     "vortex": ("quick", 0.6, 0.05, ()),
@@ -39,19 +39,19 @@ SCENES = {
     "dusty_shock": ("quick", 3e-4, 1e-5, ()),
     "newtons_cradle": ("quick", 0.9, 2e-3, ()),
 }
-MOVES = {  # what must have changed, or nothing is compared
+MOVES = {  # fields that must change, so that bits are compared of a motion
     "moving_sphere": ("gas", "bodies.fresh_nodes"),
     "shock_layer_particle": ("particle", "motion.position"),
 }
-# Cut so short these warn, with status 1, of a flow that has not settled.
+# These short runs warn, with status 1, that their flow has not settled.
 UNSETTLED = {"flat_plate", "blunt_sphere", "blunt_sphere hot", "blunt_sphere cap"}
 
 
 def settings_of(name: str) -> tuple[str, str, tuple[str, ...]]:
     """Scene, preset and settings of a short run."""
-    preset, end, window, more = SCENES[name]
+    preset, end, window, extra = SCENES[name]
     short = (f"end={end}", f"window={window}", f"output.snapshots={0.3 * end}")
-    return name.split()[0], preset, (*short, *PLAIN, *more)
+    return name.split()[0], preset, (*short, *PLAIN, *extra)
 
 
 @pytest.fixture(scope="module", params=SCENES)
@@ -64,9 +64,9 @@ def in_memory(
     scene, preset, settings = settings_of(name)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(snapshots, "remove", lambda paths: None)
-        made = load(scene, preset, settings, transport="memory")
-        make_folder(made, folder)
-        assert simulate(made, folder) == (name in UNSETTLED)
+        loaded = load(scene, preset, settings, transport="memory")
+        make_folder(loaded, folder)
+        assert simulate(loaded, folder) == (name in UNSETTLED)
     return name, folder
 
 
@@ -97,15 +97,15 @@ def test_from_a_snapshot_it_goes_on_with_the_same_bits(
 ) -> None:
     name, first = in_memory
     scene, preset, settings = settings_of(name)
-    again = tmp_path / "again"
-    shutil.copytree(first, again)
-    kept = sorted(again.glob("snapshot-*.h5"), key=snapshots.window_of)
-    assert len(kept) >= 2
-    made = load(scene, preset, settings, transport="memory")
-    assert simulate(made, again, kept[0]) == (name in UNSETTLED)
-    assert compare(first, again) is None
-    assert (first / "ledger.csv").read_bytes() == (again / "ledger.csv").read_bytes()
+    resumed = tmp_path / "again"
+    shutil.copytree(first, resumed)
+    files = sorted(resumed.glob("snapshot-*.h5"), key=snapshots.window_of)
+    assert len(files) >= 2
+    loaded = load(scene, preset, settings, transport="memory")
+    assert simulate(loaded, resumed, files[0]) == (name in UNSETTLED)
+    assert compare(first, resumed) is None
+    assert (first / "ledger.csv").read_bytes() == (resumed / "ledger.csv").read_bytes()
     if scene in MOVES:
         with Recording(first) as recording:
-            found = recording.field(*MOVES[scene])
-        assert (found[0] != found[-1]).any()
+            values = recording.field(*MOVES[scene])
+        assert (values[0] != values[-1]).any()

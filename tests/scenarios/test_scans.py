@@ -36,8 +36,8 @@ def test_no_wrong_result_is_silent(scene: str, scan: str, tmp_path: Path) -> Non
     words = ["scan", file, "--name", scan, "--out", str(tmp_path / "runs")]
     with pytest.raises(SystemExit) as ended:
         main([*words, "--json", str(tmp_path / "found.json")])
-    (found,) = json.loads((tmp_path / "found.json").read_text())["scans"]
-    verdicts = [row["verdict"] for row in found["rows"]]
+    (result,) = json.loads((tmp_path / "found.json").read_text())["scans"]
+    verdicts = [row["verdict"] for row in result["rows"]]
     assert ended.value.code == 0 and "SILENT" not in verdicts
     assert verdicts[0] == "right" and "false alarm" not in verdicts
 
@@ -50,11 +50,11 @@ def test_no_wrong_result_is_silent(scene: str, scan: str, tmp_path: Path) -> Non
 def test_nothing_is_silent_where_only_the_way_to_rest_is_wrong(
     scene: str, scan: str, right: int, tmp_path: Path
 ) -> None:
-    """Long windows or swings are told, although means at rest may be right all the same."""
+    """Long windows or swings are warned of, although means at rest may be right."""
     words = ["scan", scene, "--name", scan, "--out", str(tmp_path / "runs")]
     with pytest.raises(SystemExit) as ended:
         main([*words, "--json", str(tmp_path / "found.json")])
-    (found,) = json.loads((tmp_path / "found.json").read_text())["scans"]
-    verdicts = [row["verdict"] for row in found["rows"]]
+    (result,) = json.loads((tmp_path / "found.json").read_text())["scans"]
+    verdicts = [row["verdict"] for row in result["rows"]]
     assert ended.value.code == 0 and "SILENT" not in verdicts
     assert verdicts[:right] == ["right"] * right and "right" not in verdicts[right:]

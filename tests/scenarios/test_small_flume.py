@@ -1,4 +1,4 @@
-"""Bodies of every kind in a fluid of two dimensions: momentum, the plane, and what is measured."""
+"""Bodies of every kind in a fluid of two dimensions: momentum, plane motion, measured loads."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -15,20 +15,20 @@ DRY += ["--set", "components.bodies.bodies.1.origin=[0.26, 0.0, 6.0]"]
 
 @pytest.mark.parametrize("scheme", ["serial", "parallel", "iterated"])
 def test_links_conserve_momentum_and_nothing_leaves_the_plane(run_scene: Run, scheme: str) -> None:
-    found = run_scene(SCENE, "--set", f"scheme={scheme}", "--set", "end=0.15")
-    assert found["status"] == "done"
-    for link in found["ledger"]["links"]:
+    results = run_scene(SCENE, "--set", f"scheme={scheme}", "--set", "end=0.15")
+    assert results["status"] == "done"
+    for link in results["ledger"]["links"]:
         assert link["momentum_residual"] < 1e-12, link
         assert link["kinematic_residual"] < 1e-12, link
-    with Recording(found["folder"]) as recording:
+    with Recording(results["folder"]) as recording:
         for name in ("bodies", "block"):
             for field, out in (("velocity", [1]), ("angular_velocity", [0, 2])):
                 assert not recording.field(name, f"motion.{field}")[:, :, out].any()
 
 
 def test_bodies_meet_in_the_water(run_scene: Run) -> None:
-    found = run_scene(SCENE)
-    with Recording(found["folder"]) as recording:
+    results = run_scene(SCENE)
+    with Recording(results["folder"]) as recording:
         contact = recording.field("bodies", "contact.force")
         height = recording.field("bodies", "motion.position")[:, :, 2]
         times = recording.times("bodies")
@@ -38,8 +38,8 @@ def test_bodies_meet_in_the_water(run_scene: Run) -> None:
 
 
 def test_the_load_on_a_fixed_block_is_the_weight_of_its_area(run_scene: Run) -> None:
-    found = run_scene(SCENE, *DRY, "--set", "end=0.4")
-    with Recording(found["folder"]) as recording:
+    results = run_scene(SCENE, *DRY, "--set", "end=0.4")
+    with Recording(results["folder"]) as recording:
         impulse = recording.field("block", "measured_load.force")[:, 0]  # N s, of each window
         late = recording.times("block") > 0.2
     mean = impulse[late].mean(axis=0) / 1e-3 / (9810.0 * 0.12**2)

@@ -55,7 +55,7 @@ def test_the_scene_expects_what_zener_has() -> None:
 
 def test_a_sphere_gives_a_plate_as_much_as_zener_has(run_scene: Run) -> None:
     results = run_scene("sphere_on_plate", "--transport", "memory")
-    assert all(row["met"] for row in results["expect"]), results["expect"]
+    assert all(outcome["met"] for outcome in results["expect"]), results["expect"]
     (link,) = results["ledger"]["links"]
     assert link["momentum_residual"] <= 1e-12
     assert results["energy_gained"] < 0.01

@@ -10,18 +10,18 @@ Run = Callable[..., dict]
 
 
 @pytest.fixture(scope="module")
-def found(run_scene: Run) -> dict:
+def results(run_scene: Run) -> dict:
     return run_scene("standing_wave", "--preset", "quick")
 
 
 @pytest.mark.parametrize("name", ["period", "decay"])
-def test_wave_is_that_of_linear_theory(found: dict, name: str) -> None:
-    one = found["by_name"][name]
-    assert one["met"], one
+def test_wave_is_that_of_linear_theory(results: dict, name: str) -> None:
+    outcome = results["by_name"][name]
+    assert outcome["met"], outcome
 
 
-def test_wave_starts_with_its_energy_and_falls_in_the_middle(found: dict) -> None:
-    with Recording(found["folder"]) as recording:
+def test_wave_starts_with_its_energy_and_falls_in_the_middle(results: dict) -> None:
+    with Recording(results["folder"]) as recording:
         kinetic = recording.history("water", "motion_gauge.kinetic", 0)
         level = recording.history("water", "level_gauge.height", 0)
     assert kinetic[0] == pytest.approx(0.25 * 1000.0 * 9.81 * 0.02**2 * 0.1, rel=0.02)

@@ -8,13 +8,13 @@ Run = Callable[..., dict]
 
 
 @pytest.fixture(scope="module")
-def found(run_scene: Run) -> dict:
+def results(run_scene: Run) -> dict:
     return run_scene("still_water", "--preset", "quick")
 
 
 @pytest.mark.parametrize(
     "name", ["floor.pressure", "middle.pressure", "wall.pressure", "level", "speed"]
 )
-def test_still_water_stays_still(found: dict, name: str) -> None:
-    one = found["by_name"][name]
-    assert one["met"], one
+def test_still_water_stays_still(results: dict, name: str) -> None:
+    outcome = results["by_name"][name]
+    assert outcome["met"], outcome

@@ -16,14 +16,14 @@ def test_the_table_is_what_was_measured():
 
 
 def test_all_refinements_of_all_scenes_are_in_it_as_they_are_now():
-    kept = {s["scene"]: [(row["label"], row["settings"]) for row in s["rows"]] for s in STUDIES}
+    recorded = {s["scene"]: [(row["label"], row["settings"]) for row in s["rows"]] for s in STUDIES}
     tables = {name: parse(path).get("study", []) for name, path in library().items()}
-    now = {
+    current = {
         name: [(row["label"], row["settings"]) for row in rows]
         for name, rows in tables.items()
         if rows
     }
-    assert kept == now
+    assert recorded == current
 
 
 def test_every_row_that_was_measured_says_when_and_on_what():

@@ -6,6 +6,6 @@ Run = Callable[..., dict]
 
 
 def test_a_steel_bar_is_shortened_and_its_foot_spreads_as_published(run_scene: Run) -> None:
-    found = run_scene("taylor_bar", "--preset", "quick")
+    results = run_scene("taylor_bar", "--preset", "quick")
     for name in ("length", "foot_diameter", "plastic_strain", "temperature"):
-        assert found["by_name"][name]["met"], found["by_name"][name]
+        assert results["by_name"][name]["met"], results["by_name"][name]

@@ -1,4 +1,4 @@
-"""A light body in long windows: its coupling is told to be unstable, and what makes it stable."""
+"""A light body in long windows: the run warns of an unstable coupling, and its advice works."""
 
 import re
 from pathlib import Path
@@ -15,7 +15,7 @@ Settings = dict[str, Any]
 
 
 def square(density: float, window: float, scheme: Settings, end: float = 0.15) -> Settings:
-    """A square that weighs what it displaces as it is let go, five spacings across."""
+    """Settings of a square whose weight equals its buoyancy at release, five spacings across."""
     return {
         "end": end,
         "window": window,
@@ -26,16 +26,18 @@ def square(density: float, window: float, scheme: Settings, end: float = 0.15) -
     }
 
 
-def told(folder: Path, settings: Settings) -> str:
-    """What a run is told about its coupling; "" if it is stable."""
+def stability_warning(folder: Path, settings: Settings) -> str:
+    """Run; return the warning of an unstable coupling, or "" if it is stable."""
     run = quintet.run("floating_square", preset="quick", settings=settings, out=folder)
-    texts = [one["text"] for one in run.results["warnings"] if one["subject"] == "stability"]
+    texts = [
+        warning["text"] for warning in run.results["warnings"] if warning["subject"] == "stability"
+    ]
     assert str(run).count("Warning of link water-square: its coupling is unstable") == len(texts)
     return str(texts[0]) if texts else ""
 
 
 def advised(settings: Settings, text: str) -> Settings:
-    """The settings with what is advised."""
+    """The settings, changed as a warning advises."""
     repeated, shorter = (
         'set scheme = "iterated"' in text,
         re.search(r"shorten window from \S+ s to (\S+) s\.$", text),
@@ -58,24 +60,28 @@ def test_a_light_body_in_long_windows_is_told_and_stable_as_advised(
     tmp_path: Path, density: float, scheme: Settings
 ) -> None:
     settings = square(density, 5e-3, scheme)
-    text = told(tmp_path / "long", settings)
+    text = stability_warning(tmp_path / "long", settings)
     assert text.startswith("its coupling is unstable: by t = 0.")
-    assert told(tmp_path / "advised", advised(settings, text)) == ""
+    assert stability_warning(tmp_path / "advised", advised(settings, text)) == ""
 
 
 def test_a_doubtful_run_does_not_end_as_one_that_met_all(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     settings = square(50.0, 5e-3, ITERATED) | {"expect": []}
-    asked = [word for key, value in settings.items() for word in ("--set", f"{key}={value}")]
+    words = [word for key, value in settings.items() for word in ("--set", f"{key}={value}")]
     with pytest.raises(SystemExit) as ended:
         main(
-            ["run", "floating_square", "--preset", "quick", *asked, "--out", str(tmp_path / "run")]
+            ["run", "floating_square", "--preset", "quick", *words, "--out", str(tmp_path / "run")]
         )
     assert ended.value.code == 1
-    said = capsys.readouterr()
-    assert "quintet: warning of link water-square: its coupling is unstable: by t = 0." in said.err
-    assert "Warning of link water-square: its coupling is unstable" in " ".join(said.out.split())
+    captured = capsys.readouterr()
+    assert (
+        "quintet: warning of link water-square: its coupling is unstable: by t = 0." in captured.err
+    )
+    assert "Warning of link water-square: its coupling is unstable" in " ".join(
+        captured.out.split()
+    )
 
 
 STABLE = [
@@ -110,7 +116,7 @@ UNSTABLE = [
 def test_a_stable_run_is_not_told(
     tmp_path: Path, density: float, window: float, scheme: Settings
 ) -> None:
-    assert told(tmp_path, square(density, window, scheme, 0.4)) == ""
+    assert stability_warning(tmp_path, square(density, window, scheme, 0.4)) == ""
 
 
 @pytest.mark.full
@@ -119,6 +125,6 @@ def test_every_unstable_run_is_told_and_stable_as_advised(
     tmp_path: Path, density: float, window: float, scheme: Settings
 ) -> None:
     settings = square(density, window, scheme, 0.4)
-    text = told(tmp_path / "long", settings)
+    text = stability_warning(tmp_path / "long", settings)
     assert text
-    assert told(tmp_path / "advised", advised(settings, text)) == ""
+    assert stability_warning(tmp_path / "advised", advised(settings, text)) == ""

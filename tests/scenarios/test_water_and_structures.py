@@ -1,4 +1,4 @@
-"""Water on and around elastic structures in two dimensions: the link, and what these do."""
+"""Water on and around elastic structures in two dimensions: the link, and their motion."""
 
 import csv
 import shutil
@@ -34,7 +34,7 @@ STRIP = (
 
 
 def _options(settings: tuple[str, ...]) -> list[str]:
-    return [part for one in settings for part in ("--set", one)]
+    return [word for setting in settings for word in ("--set", setting)]
 
 
 def _repetitions(folder: Path) -> list[int]:
@@ -43,53 +43,53 @@ def _repetitions(folder: Path) -> list[int]:
 
 
 def _moved(folder: Path) -> float:
-    """How far [m] the gate's free edge is at the end of a run."""
+    """Displacement [m] of the gate's free edge at the end of a run."""
     with Recording(folder) as recording:
         return float(recording.field("gate", "node_gauge.position")[-1, 0, 0] - 0.105)
 
 
 def test_water_on_a_plate_bends_it_and_the_link_conserves_momentum(run_scene: Run) -> None:
     short = _options(("end=0.02",))
-    found = run_scene("water_on_plate", "--preset", "quick", "--transport", "memory", *short)
-    (link,) = found["ledger"]["links"]
+    results = run_scene("water_on_plate", "--preset", "quick", "--transport", "memory", *short)
+    (link,) = results["ledger"]["links"]
     assert link["momentum_residual"] <= 1e-12
     assert link["angular_residual"] <= 1e-12
     assert link["energy_residual"] < 1e-3
-    # It bears nearly all of the weight of the water, over 0.02 s; the walls some at its ends.
+    # The plate bears nearly all of the water's weight over 0.02 s, the walls some at its ends.
     assert link["impulse"][2] == pytest.approx(-19620.0 * 0.02, rel=0.1)
 
 
 def test_the_plate_under_the_water_bends_by_its_reference() -> None:
     """Plane strain under an even pressure, by quadratic elements; 66.2 µm, as the scene says."""
     youngs, ratio, pressure = 6.75e10, 0.34, 19620.0
-    first, shear = youngs * ratio / (1 + ratio) / (1 - 2 * ratio), youngs / 2 / (1 + ratio)
+    lame, shear = youngs * ratio / (1 + ratio) / (1 - 2 * ratio), youngs / 2 / (1 + ratio)
     along = np.concatenate([0.5 * np.linspace(0, 1, 41) ** 2, 1 - 0.5 * np.linspace(1, 0, 41) ** 2])
     mesh = skfem.MeshQuad.init_tensor(np.unique(along), np.linspace(-0.05, 0.0, 9))
     element = skfem.ElementVector(skfem.ElementQuad2())
     inside = skfem.Basis(mesh, element)
     top = skfem.FacetBasis(mesh, element, facets=mesh.facets_satisfying(lambda x: x[1] > -1e-9))
     stiffness = skfem.BilinearForm(
-        lambda u, v, _: first * div(u) * div(v) + 2 * shear * ddot(sym_grad(u), sym_grad(v))
+        lambda u, v, _: lame * div(u) * div(v) + 2 * shear * ddot(sym_grad(u), sym_grad(v))
     ).assemble(inside)
     load_ = skfem.LinearForm(lambda v, _: -pressure * v[1]).assemble(top)
     ends = inside.get_dofs(lambda x: np.abs(x[0] - 0.5) > 0.5 - 1e-9)
-    moved = skfem.solve(*skfem.condense(stiffness, load_, D=ends))
-    across = inside.probes(np.array([[0.5], [-0.025]])) @ moved
-    assert across[1] == pytest.approx(-6.62e-5, rel=2e-3)
+    displacement = skfem.solve(*skfem.condense(stiffness, load_, D=ends))
+    middle = inside.probes(np.array([[0.5], [-0.025]])) @ displacement
+    assert middle[1] == pytest.approx(-6.62e-5, rel=2e-3)
 
 
-@pytest.mark.parametrize(("acceleration", "most"), [("iqn-ils", 4.0), ("aitken", 4.0)])
+@pytest.mark.parametrize(("acceleration", "most_repetitions"), [("iqn-ils", 4.0), ("aitken", 4.0)])
 def test_a_gate_lighter_than_its_water_is_iterated_in_few_repetitions(
-    run_scene: Run, acceleration: str, most: float
+    run_scene: Run, acceleration: str, most_repetitions: float
 ) -> None:
     """Wetted on one side, sampled on all: both sides of the link do the same work."""
     chosen = ("end=0.005", "window=2e-4", f"iteration.acceleration={acceleration}")
-    found = run_scene("elastic_gate", *_options(chosen))
-    (link,) = found["ledger"]["links"]
+    results = run_scene("elastic_gate", *_options(chosen))
+    (link,) = results["ledger"]["links"]
     assert link["momentum_residual"] <= 1e-12
     assert link["energy_residual"] < 0.02
-    repeated = _repetitions(found["folder"])
-    assert sum(repeated) / len(repeated) < most
+    repeated = _repetitions(results["folder"])
+    assert sum(repeated) / len(repeated) < most_repetitions
 
 
 def test_a_plate_thinner_than_the_water_can_see_is_refused(
@@ -103,8 +103,8 @@ def test_a_plate_thinner_than_the_water_can_see_is_refused(
     with pytest.raises(SystemExit) as ended:
         main(["run", "elastic_gate", "--out", f"{tmp_path}/thin", *_options(thin)])
     assert ended.value.code == 2
-    said = " ".join(capsys.readouterr().err.split())
-    assert "a body must be at least 0.0025 m thick between its faces" in said
+    message = " ".join(capsys.readouterr().err.split())
+    assert "a body must be at least 0.0025 m thick between its faces" in message
 
 
 BITS = ("end=1.2e-3", "window=2e-4", "output.snapshots=4e-4", "output.pictures=[]", "expect=[]")
@@ -143,12 +143,12 @@ def test_every_transport_gives_the_same_bits(
 def test_resumed_from_a_snapshot_it_goes_on_with_the_same_bits(
     in_memory: Path, tmp_path: Path
 ) -> None:
-    again = tmp_path / "again"
-    shutil.copytree(in_memory, again)
-    kept = sorted(again.glob("snapshot-*.h5"), key=snapshots.window_of)
-    assert len(kept) >= 2
-    assert simulate(load("elastic_gate", settings=BITS, transport="memory"), again, kept[0]) == 0
-    assert compare(in_memory, again) is None
+    resumed = tmp_path / "again"
+    shutil.copytree(in_memory, resumed)
+    files = sorted(resumed.glob("snapshot-*.h5"), key=snapshots.window_of)
+    assert len(files) >= 2
+    assert simulate(load("elastic_gate", settings=BITS, transport="memory"), resumed, files[0]) == 0
+    assert compare(in_memory, resumed) is None
 
 
 @pytest.mark.full
