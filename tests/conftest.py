@@ -1,4 +1,4 @@
-"""What tests of several folders share."""
+"""Fixtures for tests of several folders: certificates, and programs on MPI ranks."""
 
 import subprocess
 import sys
@@ -14,7 +14,7 @@ def openssl(folder, *arguments):
 
 
 def authority(folder, name):
-    """An authority with its key, and a leaf for both sides that it signed."""
+    """Create an authority and a certificate for both sides that it signed; return their files."""
     key = ["-newkey", "rsa:2048", "-nodes", "-days", "1"]
     openssl(
         folder, "req", "-x509", *key, "-keyout", f"{name}.key", "-out", f"{name}.pem",
@@ -38,7 +38,7 @@ def authority(folder, name):
 
 @pytest.fixture(scope="session")
 def certificates(tmp_path_factory):
-    """Files for mutual TLS on this host: of an authority of ours, and of a foreign one."""
+    """Files for mutual TLS on this host, signed by our authority and by a foreign one."""
     folder = tmp_path_factory.mktemp("certificates")
     return authority(folder, "ours"), authority(folder, "foreign")
 
@@ -46,15 +46,15 @@ def certificates(tmp_path_factory):
 @pytest.fixture(scope="session")
 def on_ranks():
     """Run a Python program on several MPI ranks, with a deadline; return what it printed."""
-    beside = Path(sys.executable).with_name("mpiexec")
-    launcher = str(beside) if beside.exists() else "mpiexec"
+    mpiexec = Path(sys.executable).with_name("mpiexec")
+    launcher = str(mpiexec) if mpiexec.exists() else "mpiexec"
 
     def run(program, ranks, *arguments, seconds=100):
         command = [launcher, "-n", str(ranks), sys.executable, "-m", "mpi4py", str(program)]
-        done = subprocess.run(
+        process = subprocess.run(
             [*command, *map(str, arguments)], timeout=seconds, capture_output=True, text=True
         )
-        assert done.returncode == 0, done.stdout + done.stderr
-        return done.stdout
+        assert process.returncode == 0, process.stdout + process.stderr
+        return process.stdout
 
     return run

@@ -52,12 +52,12 @@ def in_circles(graph):
     """Nodes that can be reached from themselves."""
     reached = {}
     for start in graph:
-        stack, seen = list(graph[start]), set()
+        stack, visited = list(graph[start]), set()
         while stack:
-            if (node := stack.pop()) not in seen:
-                seen.add(node)
+            if (node := stack.pop()) not in visited:
+                visited.add(node)
                 stack.extend(graph.get(node, ()))
-        reached[start] = seen
+        reached[start] = visited
     return {node for node in graph if node in reached[node]}
 
 

@@ -1,4 +1,4 @@
-"""The texts in the folders name what is there, and their examples run."""
+"""Texts in the folders name files and functions that exist, and their examples run."""
 
 import ast
 import re
@@ -49,7 +49,7 @@ def blocks(text, kind):
 
 
 def quoted(path):
-    """Yield what stands between backquotes in the running text."""
+    """Return the texts between backquotes outside blocks of code."""
     return re.findall(r"`([^`\n]+)`", FENCE.sub("", path.read_text()))
 
 
@@ -94,7 +94,9 @@ def bound(node):
         yield node.name
     targets = node.targets if isinstance(node, ast.Assign) else [getattr(node, "target", None)]
     for target in targets:
-        yield from (one.id for one in ast.walk(target or ast.Pass()) if isinstance(one, ast.Name))
+        yield from (
+            child.id for child in ast.walk(target or ast.Pass()) if isinstance(child, ast.Name)
+        )
 
 
 @pytest.mark.parametrize("path", TEXTS, ids=where)
@@ -113,9 +115,9 @@ def test_commands_are_those_of_the_command_line(path):
             words = shlex.split(command, comments=True)
             names = [Path(word).name for word in words]
             if "quintet" in names and "pip" not in names:
-                rest = words[names.index("quintet") + 1 :]
-                rest = rest[: rest.index(">")] if ">" in rest else rest
-                cli.parser().parse_args([word for word in rest if word != "&"])
+                arguments = words[names.index("quintet") + 1 :]
+                arguments = arguments[: arguments.index(">")] if ">" in arguments else arguments
+                cli.parser().parse_args([word for word in arguments if word != "&"])
 
 
 @pytest.mark.parametrize("path", TEXTS, ids=where)
@@ -127,7 +129,7 @@ def test_examples_of_scenes_can_be_read(path):
 CONTRACT = [Field, Port, Resources, Manifest, Plan, BenchCase, ConformCase]
 SCENE = [SceneFile, OutputSettings, GroupSettings, IterationSettings, Expectation]
 SCENE += [RefinementTable, LimitTable, ScanTable]
-TOLD = {
+DESCRIBED = {
     "interfaces/README.md": CONTRACT,
     "coupler/README.md": [Transfer, Demands, Binding],
     "scenarios/README.md": SCENE,
@@ -135,21 +137,22 @@ TOLD = {
 
 
 @pytest.mark.parametrize(
-    ("readme", "kind"), [(readme, kind) for readme, kinds in TOLD.items() for kind in kinds]
+    ("readme", "kind"), [(readme, kind) for readme, kinds in DESCRIBED.items() for kind in kinds]
 )
 def test_every_part_of_contract_links_and_scenes_is_told(readme, kind):
     text = (ROOT / readme).read_text()
-    names = [one.name.rstrip("_") for one in fields(kind)]
-    assert [name for name in names if not is_told(text, name)] == []
+    names = [field.name.rstrip("_") for field in fields(kind)]
+    assert [name for name in names if not is_described(text, name)] == []
 
 
 def test_every_call_of_the_contract_is_told():
     text = (ROOT / "interfaces/README.md").read_text()
     calls = [name for name in vars(Component) if not name.startswith("_")]
-    assert [one for one in calls if not is_told(text, one)] == ["takes", "gives"]  # as words
+    # The text has these two as words.
+    assert [name for name in calls if not is_described(text, name)] == ["takes", "gives"]
 
 
-def is_told(text, name):
+def is_described(text, name):
     """Whether a text has a name between backquotes, or as a key of an example in TOML."""
     return re.search(rf"[`\[]{name}[(`\].]|^\[*{name}(?: =|\])", text, re.MULTILINE)
 
@@ -166,13 +169,15 @@ def installed(tmp_path, monkeypatch):
             (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
             (tmp_path / name).write_text(inside)
         project = tomllib.loads((tmp_path / "pyproject.toml").read_text())["project"]
-        told = tmp_path / f"{project['name']}-{project['version']}.dist-info"
-        told.mkdir()
-        (told / "METADATA").write_text(f"Name: {project['name']}\nVersion: {project['version']}\n")
+        metadata = tmp_path / f"{project['name']}-{project['version']}.dist-info"
+        metadata.mkdir()
+        (metadata / "METADATA").write_text(
+            f"Name: {project['name']}\nVersion: {project['version']}\n"
+        )
         lines = []
         for group, points in project["entry-points"].items():
             lines += [f"[{group}]", *(f"{key} = {value}" for key, value in points.items())]
-        (told / "entry_points.txt").write_text("\n".join(lines))
+        (metadata / "entry_points.txt").write_text("\n".join(lines))
         monkeypatch.syspath_prepend(tmp_path)
         return tmp_path
 
@@ -185,8 +190,10 @@ def test_the_example_of_a_solver_is_installed_measured_and_runs(installed):
     (case,) = manifest.cases()
     assert not read(manifest.params, case.params, case.name)[1]
     (case,) = manifest.conform_cases()
-    findings = [one for _, one in try_all(Trial(manifest, case, folder)) if one is not None]
-    assert [one.said for one in findings if one.status == "failed"] == []
+    findings = [
+        finding for _, finding in try_all(Trial(manifest, case, folder)) if finding is not None
+    ]
+    assert [finding.said for finding in findings if finding.status == "failed"] == []
     assert run_scene(load(str(folder / "scene.toml")), folder / "run")[1] == 0
     assert results(folder / "run")["ledger"]["links"][0]["momentum_residual"] < 1e-13
 

@@ -13,8 +13,8 @@ MAY_IMPORT = {
     "coupler": {"interfaces", "coupler"},
     "scenarios": {"interfaces", "coupler"},
 }
-# Floors of the two folders, the ground first: what lies on one may import what lies below it, and,
-# in its own wing, anything. What stands on one floor does not know of each other.
+# Floors of the two folders, the ground first. A wing may import wings of lower floors and anything
+# of its own; wings of one floor do not import each other.
 FLOORS = {
     "interfaces": [
         {"errors", "waited", "installed"},
@@ -62,18 +62,20 @@ def imported(path):
         else:
             continue
         for name in names:
-            head, *rest = name.split(".")
+            head, *parts = name.split(".")
             assert head not in MAY_IMPORT, f"{path}:{node.lineno}: quintet.{name}, not {name}"
             if head == "quintet":
-                yield rest
+                yield parts
 
 
 def forbidden_imports(path):
     """Yield the imports of a file that its folder does not allow."""
     folder, *inner = path.relative_to(ROOT).parts
-    own = {("components", inner[0]), ("components", "shared")} if folder == "components" else set()
+    allowed = (
+        {("components", inner[0]), ("components", "shared")} if folder == "components" else set()
+    )
     for target in imported(path):
-        if target[0] not in MAY_IMPORT[folder] and tuple(target[:2]) not in own:
+        if target[0] not in MAY_IMPORT[folder] and tuple(target[:2]) not in allowed:
             yield f"{where(path)}: {'.'.join(target)}"
 
 
@@ -100,11 +102,11 @@ def upward_imports(path):
     if folder not in FLOORS or inner == ["__init__.py"]:
         return
     level = {wing: n for n, floor in enumerate(FLOORS[folder]) for wing in floor}
-    own = wing_of(inner)
+    own_wing = wing_of(inner)
     for target in imported(path):
-        if len(target) > 1 and target[0] == folder and target[1] != own:
-            if level[target[1]] >= level[own]:
-                yield f"{where(path)}: {own} must not import {'.'.join(target)}"
+        if len(target) > 1 and target[0] == folder and target[1] != own_wing:
+            if level[target[1]] >= level[own_wing]:
+                yield f"{where(path)}: {own_wing} must not import {'.'.join(target)}"
 
 
 def test_imports_run_downwards_between_the_wings():
@@ -135,14 +137,14 @@ def test_late_imports_have_a_comment_with_their_reason():
 
 def test_neither_contract_nor_coupler_knows_a_solver_by_name():
     solvers = SOLVERS - {"shared", "stand_ins"}
-    named = [
+    places = [
         f"{where(path)}:{node.lineno}"
         for path in FILES
         if path.relative_to(ROOT).parts[0] in ("interfaces", "coupler")
         for node in nodes(path)
         if isinstance(node, ast.Constant) and str(node.value) in solvers
     ]
-    assert named == []
+    assert places == []
 
 
 def test_files_are_small():

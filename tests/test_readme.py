@@ -1,4 +1,4 @@
-"""The README shows what is there."""
+"""The README's examples run; its links and scenes exist."""
 
 import re
 import tomllib
@@ -32,7 +32,9 @@ def test_the_scene_it_shows_can_run(tmp_path):
 
 
 def test_the_python_example_runs(tmp_path, monkeypatch, capsys):
-    (example,) = (one for one in blocks(RUNNING, "python") if one.startswith("import quintet\n"))
+    (example,) = (
+        block for block in blocks(RUNNING, "python") if block.startswith("import quintet\n")
+    )
     monkeypatch.chdir(tmp_path)
     exec(example)
     assert capsys.readouterr().out.endswith("done (251, 1, 3) m 0.5\n")
@@ -48,13 +50,13 @@ def test_every_scene_has_a_row_that_names_the_kind_of_its_reference():
     rows = [line.split("|")[1:-1] for line in table.splitlines() if line.startswith("| ")][1:]
     kinds = {kind.strip() for row in rows for kind in row[2].split(",")}
     assert kinds == {"exact", "experiment", "other code", "own finest run"}
-    named = {name for row in rows for name in re.findall(r"quintet run (\w+)", row[0])}
-    assert named == {path.parent.name for path in (ROOT / "scenarios").glob("*/scene.toml")}
+    scenes = {name for row in rows for name in re.findall(r"quintet run (\w+)", row[0])}
+    assert scenes == {path.parent.name for path in (ROOT / "scenarios").glob("*/scene.toml")}
 
 
 def test_the_scenes_it_runs_exist():
-    named = set(re.findall(r"quintet (?:run|check|join) ([a-z]\w*)(?![\w.])", README + RUNNING))
-    assert named and all((ROOT / "scenarios" / name / "scene.toml").exists() for name in named)
+    scenes = set(re.findall(r"quintet (?:run|check|join) ([a-z]\w*)(?![\w.])", README + RUNNING))
+    assert scenes and all((ROOT / "scenarios" / name / "scene.toml").exists() for name in scenes)
 
 
 @pytest.mark.parametrize("name", ["CONTRIBUTING.md", "CHANGELOG.md"])
@@ -66,9 +68,9 @@ def test_what_texts_for_developers_link_is_there(name):
 
 def test_constraints_name_a_version_of_every_package_that_is_needed():
     lines = (ROOT / ".github/constraints.txt").read_text().splitlines()[1:]
-    given = {canonicalize_name(Requirement(line).name) for line in lines}
+    constrained = {canonicalize_name(Requirement(line).name) for line in lines}
     assert all(str(Requirement(line).specifier).startswith("==") for line in lines)
     project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
     groups = [project["dependencies"], *project["optional-dependencies"].values()]
-    wanted = [Requirement(one).name for group in groups for one in group]
-    assert set(map(canonicalize_name, wanted)) - {project["name"]} <= given
+    required = [Requirement(requirement).name for group in groups for requirement in group]
+    assert set(map(canonicalize_name, required)) - {project["name"]} <= constrained
