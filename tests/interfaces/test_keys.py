@@ -1,4 +1,4 @@
-"""What a parameter class says of its keys is read as data: from its docstring and annotations."""
+"""Keys of a parameter class are read as data, from its docstring and annotations."""
 
 from dataclasses import dataclass
 from typing import Annotated, Any, Literal
@@ -64,14 +64,14 @@ class Table:
     first: Annotated[int, Field(alias="from", ge=2)] = 2
 
 
-FOUND = {key.name: key for key in keys(Table)}
+KEYS = {key.name: key for key in keys(Table)}
 
 
 def test_meaning_and_unit_are_those_of_the_docstring():
-    assert (FOUND["height"].meaning, FOUND["height"].unit) == ("Of its top, over two lines.", "m")
-    assert FOUND["low"].unit == FOUND["high"].unit == "kg/m3"
-    assert (FOUND["colour"].meaning, FOUND["colour"].unit) == ("Any.", "")
-    assert (FOUND["size"].meaning, FOUND["size"].unit) == ("", "")
+    assert (KEYS["height"].meaning, KEYS["height"].unit) == ("Of its top, over two lines.", "m")
+    assert KEYS["low"].unit == KEYS["high"].unit == "kg/m3"
+    assert (KEYS["colour"].meaning, KEYS["colour"].unit) == ("Any.", "")
+    assert (KEYS["size"].meaning, KEYS["size"].unit) == ("", "")
     assert about(Table) == "A table to stand on.\n\nIt has legs."
 
 
@@ -103,8 +103,8 @@ def test_a_class_without_a_docstring_says_nothing():
 
 
 def test_type_range_and_default_are_those_of_the_annotation():
-    said = {name: (key.words, key.range, key.default) for name, key in FOUND.items()}
-    assert said == {
+    rows = {name: (key.words, key.range, key.default) for name, key in KEYS.items()}
+    assert rows == {
         "height": ("number", "> 0", ""),
         "low": ("number", "≥ 0", "0.0"),
         "high": ("number", "> 0", "none"),
@@ -122,11 +122,11 @@ def test_type_range_and_default_are_those_of_the_annotation():
         "named": ("table of tables", "", "{}"),
         "from": ("whole number", "≥ 2", "2"),
     }
-    assert [key.name for key in FOUND.values() if key.needed] == ["height"]
+    assert [key.name for key in KEYS.values() if key.needed] == ["height"]
 
 
 def test_tables_within_and_numbers_are_known():
-    inner = {name: key.place for name, key in FOUND.items() if key.inner is Leg}
+    inner = {name: key.place for name, key in KEYS.items() if key.inner is Leg}
     assert inner == {"leg": "table", "legs": "list", "named": "names"}
     text = {"colour", "file", "free", *inner}
-    assert {name for name, key in FOUND.items() if not key.numeric} == text
+    assert {name for name, key in KEYS.items() if not key.numeric} == text

@@ -42,9 +42,9 @@ def test_every_constant_has_one_dated_source_and_is_known(name):
 @pytest.mark.parametrize("name", NAMES)
 def test_every_constant_of_the_library_is_taken_by_some_kind(name):
     takers = [params for _, _, params in PLACES if name in fitting(params, library())]
-    taken = {constant for params in takers for constant in params.MATERIAL.values()}
+    used = {constant for params in takers for constant in params.MATERIAL.values()}
     assert takers
-    assert set(constants(library()[name])) - taken == set()
+    assert set(constants(library()[name])) - used == set()
 
 
 @pytest.mark.parametrize(("kind", "path", "params"), PLACES, ids=lambda part: str(part))
@@ -55,7 +55,7 @@ def test_every_fitting_material_fills_a_table_that_can_be_read(kind, path, param
         table, mistakes = fill(params, {"material": name}, kind, library())
         assert mistakes == []
         _, wrong = read(params, table, kind)
-        # What a material is not known for, as its friction, the scene must add.
+        # Constants that the material lacks, as its friction, the scene must add.
         assert [mistake for mistake in wrong if "is needed. Add" not in mistake] == []
 
 
@@ -71,14 +71,14 @@ def test_units_are_those_of_the_keys_that_take_the_constants():
 def _units(params):
     """Yield the constants that a class takes, with the units of its keys."""
     for path, constant in params.MATERIAL.items():
-        at = params
+        table_class = params
         for part in path.split("."):
-            (key,) = (key for key in keys(at) if key.name == part)
-            at = key.inner
-        if at is None:
+            (key,) = (key for key in keys(table_class) if key.name == part)
+            table_class = key.inner
+        if table_class is None:
             yield constant, key.unit
         else:
-            yield from ((f"{constant}.{inner.name}", inner.unit) for inner in keys(at))
+            yield from ((f"{constant}.{inner.name}", inner.unit) for inner in keys(table_class))
 
 
 @pytest.mark.parametrize(
@@ -126,12 +126,14 @@ def test_gases_have_the_constants_of_their_molecules(name, mass):
 
 
 def test_air_is_that_of_the_standard_atmosphere():
-    air, at = library()["air"], 288.15
-    viscosity = 1.458e-6 * at**1.5 / (at + 110.4)
-    ratio = (at / air["reference_temperature"]) ** 1.5
-    ratio *= (air["reference_temperature"] + air["sutherland"]) / (at + air["sutherland"])
+    air, temperature = library()["air"], 288.15
+    viscosity = 1.458e-6 * temperature**1.5 / (temperature + 110.4)
+    ratio = (temperature / air["reference_temperature"]) ** 1.5
+    ratio *= (air["reference_temperature"] + air["sutherland"]) / (temperature + air["sutherland"])
     assert air["viscosity"] * ratio == pytest.approx(viscosity, rel=1e-4)
-    conductivity = 2.64638e-3 * at**1.5 / (at + 245.4 * 10.0 ** (-12.0 / at))
+    conductivity = (
+        2.64638e-3 * temperature**1.5 / (temperature + 245.4 * 10.0 ** (-12.0 / temperature))
+    )
     heat = 3.5 * air["gas_constant"]
     assert air["prandtl"] == pytest.approx(viscosity * heat / conductivity, abs=1e-3)
 

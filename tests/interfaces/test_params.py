@@ -30,8 +30,8 @@ class Fluid:
 
 
 def test_an_old_key_is_answered_with_the_new_one():
-    made, wrong = read(Fluid, {"youngs_modulus": 1.0, "laminar": 1e-6}, "components.water")
-    assert made is None
+    params, wrong = read(Fluid, {"youngs_modulus": 1.0, "laminar": 1e-6}, "components.water")
+    assert params is None
     assert wrong == ["components.water.laminar is now viscosity.kinematic. Rename it."]
 
 
@@ -55,8 +55,8 @@ def test_a_needed_key_given_under_its_old_name_is_not_missing():
 
 
 def test_new_keys_are_taken_and_their_mistakes_told_as_ever():
-    made, wrong = read(Fluid, {"youngs_modulus": 1.0, "viscosity": {"artificial": 0.3}}, "water")
-    assert not wrong and made.viscosity.artificial == 0.3 and made.viscosity.kinematic == 0.0
+    params, wrong = read(Fluid, {"youngs_modulus": 1.0, "viscosity": {"artificial": 0.3}}, "water")
+    assert not wrong and params.viscosity.artificial == 0.3 and params.viscosity.kinematic == 0.0
     _, wrong = read(Fluid, {"youngs_modulus": 1.0, "viscosity": {"artifical": -1.0}}, "water")
     assert wrong == ["water.viscosity.artifical is not known. Did you mean artificial?"]
     _, wrong = read(Fluid, {"viscosity": {"artificial": -1.0}}, "water")

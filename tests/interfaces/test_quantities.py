@@ -117,11 +117,11 @@ WRONG = {
 
 @pytest.mark.parametrize(("text", "unit"), WRONG)
 def test_a_wrong_unit_is_refused_with_the_one_that_is_needed(text, unit):
-    with pytest.raises(ValueError) as refused:
+    with pytest.raises(ValueError) as error:
         number_in(text, unit, "components.water.spacing")
-    assert str(refused.value).startswith("components.water.spacing")
-    assert WRONG[text, unit] in str(refused.value)
-    assert repr(text) in str(refused.value)
+    assert str(error.value).startswith("components.water.spacing")
+    assert WRONG[text, unit] in str(error.value)
+    assert repr(text) in str(error.value)
 
 
 GROUPS = ("1_000 mm", "1_0.5 m", "2_ kg", "2_kg", "1__0 m", "_1 m", "1_.5 m", "2.e1 m")

@@ -37,19 +37,19 @@ def between_ends(first, last, ends=True):
 
 @pytest.mark.parametrize("turn", [1e-9, 1e-3, 1.0, 3.0, 5.0, 9.0])  # rad in a window
 @pytest.mark.parametrize("sign", [1.0, -1.0])
-@pytest.mark.parametrize("known", [True, False])
-def test_steady_turning_is_exact_and_of_unit_length_in_mid_window(turn, sign, known):
+@pytest.mark.parametrize("is_end_known", [True, False])
+def test_steady_turning_is_exact_and_of_unit_length_in_mid_window(turn, sign, is_end_known):
     """The end's quaternion may have either sign: both are the same rotation."""
     rate = turn / WINDOW * AXES
     last = sign * rotation.turned(START, rate, WINDOW)
-    inputs = between_ends((START, rate), (last, rate), known)
-    given = inputs.over(0.0, WINDOW, WINDOW)["pose.orientation"]
+    inputs = between_ends((START, rate), (last, rate), is_end_known)
+    orientation = inputs.over(0.0, WINDOW, WINDOW)["pose.orientation"]
     exact = rotation.turned(START, rate, 0.5 * WINDOW)
-    assert np.abs(np.linalg.norm(given, axis=1) - 1.0).max() < 1e-14
-    assert angle_between(given, exact).max() < 1e-12
+    assert np.abs(np.linalg.norm(orientation, axis=1) - 1.0).max() < 1e-14
+    assert angle_between(orientation, exact).max() < 1e-12
     for begin, end in ((0.0, 0.1), (0.1, 0.25), (0.25, WINDOW)):
-        found = inputs.over(begin, end, WINDOW)["pose.angular_velocity"]
-        np.testing.assert_allclose(found, rate, rtol=1e-9, atol=1e-13)
+        mean_rate = inputs.over(begin, end, WINDOW)["pose.angular_velocity"]
+        np.testing.assert_allclose(mean_rate, rate, rtol=1e-9, atol=1e-13)
 
 
 def precession(time):
@@ -73,8 +73,8 @@ def test_unsteady_turning_converges():
         inputs = Inputs((POSE,))
         inputs.arrive(pose(*first), (), window)
         inputs.arrive(pose(*last), ("pose.orientation", "pose.angular_velocity"), window)
-        given = inputs.over(0.2 * window, 0.4 * window, window)["pose.orientation"]
-        errors.append(angle_between(given, precession(1.0 + 0.3 * window)).max())
+        orientation = inputs.over(0.2 * window, 0.4 * window, window)["pose.orientation"]
+        errors.append(angle_between(orientation, precession(1.0 + 0.3 * window)).max())
     assert np.log2(np.array(errors[:-1]) / errors[1:]).min() > 3.5
 
 
@@ -100,5 +100,7 @@ def test_a_matrix_turns_as_its_quaternion():
 def test_the_rate_of_a_rotation_vector_is_that_of_the_rotation():
     vector, rate, step = RANDOM.normal(size=(5, 3)), RANDOM.normal(size=(5, 3)), 1e-6
     moved = rotation.turned(rotation.exponential(vector), rate, step)
-    found = (rotation.logarithm(moved, vector) - vector) / step
-    np.testing.assert_allclose(rotation.rate_of_vector(vector, rate), found, rtol=1e-4, atol=1e-5)
+    quotient = (rotation.logarithm(moved, vector) - vector) / step
+    np.testing.assert_allclose(
+        rotation.rate_of_vector(vector, rate), quotient, rtol=1e-4, atol=1e-5
+    )

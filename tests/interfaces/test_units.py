@@ -23,10 +23,10 @@ def test_a_unit_is_known_by_its_powers_of_base_units(unit, powers):
 
 
 @pytest.mark.parametrize(
-    ("one", "other"), [("N m", "J"), ("Pa", "N/m2"), ("N m/s", "W"), ("J/kg", "m2/s2")]
+    ("unit", "same_unit"), [("N m", "J"), ("Pa", "N/m2"), ("N m/s", "W"), ("J/kg", "m2/s2")]
 )
-def test_units_of_one_dimension_have_the_same_powers(one, other):
-    assert dimensions(one) == dimensions(other)
+def test_units_of_one_dimension_have_the_same_powers(unit, same_unit):
+    assert dimensions(unit) == dimensions(same_unit)
 
 
 @pytest.mark.parametrize(("unit", "integral"), INTEGRATED.items())

@@ -23,9 +23,9 @@ ORDERS = (
 
 
 def mutated(frame, random):
-    """A frame that was changed in one or a few places."""
-    change = [in_bytes, in_bytes, cut, in_header, in_header, in_header, in_arrays, in_arrays, noise]
-    return change[random.integers(len(change))](bytearray(frame), random)
+    """Return a frame with one or a few changes."""
+    edits = [in_bytes, in_bytes, cut, in_header, in_header, in_header, in_arrays, in_arrays, noise]
+    return edits[random.integers(len(edits))](bytearray(frame), random)
 
 
 def in_bytes(frame, random):
@@ -40,10 +40,10 @@ def in_bytes(frame, random):
 
 
 def cut(frame, random):
-    made = frame[: random.integers(len(frame) + 1)] + random.bytes(random.integers(40))
-    if len(made) > PREFIX.size and random.random() < 0.7:
-        struct.pack_into("<Q", made, 8, len(made))
-    return made
+    shortened = frame[: random.integers(len(frame) + 1)] + random.bytes(random.integers(40))
+    if len(shortened) > PREFIX.size and random.random() < 0.7:
+        struct.pack_into("<Q", shortened, 8, len(shortened))
+    return shortened
 
 
 def noise(frame, random):
@@ -52,21 +52,21 @@ def noise(frame, random):
 
 def in_header(frame, random):
     """Another value, key or order in a header whose checksum is right."""
-    header, body = taken_apart(frame)
+    header, body = header_and_body(frame)
     for _ in range(random.integers(1, 3)):
-        changed(header, random)
-    return put_together(header, body)
+        change_value(header, random)
+    return frame_of(header, body)
 
 
-def changed(value, random):
-    """Change something in a table or list, however deep."""
+def change_value(value, random):
+    """Change one value in a table or list, at any depth."""
     keys = list(value) if isinstance(value, dict) else list(range(len(value)))
     if not keys:
         return
     key = keys[random.integers(len(keys))]
     inner = value[key]
     if isinstance(inner, (dict, list)) and inner and random.random() < 0.7:
-        changed(inner, random)
+        change_value(inner, random)
     elif key == "order":
         value[key] = ORDERS[random.integers(len(ORDERS))]
     elif random.random() < 0.2:
@@ -78,14 +78,14 @@ def changed(value, random):
 
 
 def in_arrays(frame, random):
-    """Another table of arrays: names, types, shapes, with the bytes that they need."""
-    header, body = taken_apart(frame)
+    """Another table of arrays: names, types, shapes; the body may have the bytes they need."""
+    header, body = header_and_body(frame)
     table = msgpack.unpackb(header["arrays"])
     for _ in range(random.integers(1, 3)):
         if table and random.random() < 0.8:
             entry = table[random.integers(len(table))]
-            whole = isinstance(entry, list) and len(entry) == 3
-            match random.integers(5) if whole else 4:
+            is_complete = isinstance(entry, list) and len(entry) == 3
+            match random.integers(5) if is_complete else 4:
                 case 0:
                     entry[0] = str(ODD[random.integers(len(ODD))])
                 case 1:
@@ -95,17 +95,17 @@ def in_arrays(frame, random):
                 case 3:
                     table.remove(entry)
                 case 4:
-                    changed(table, random)
+                    change_value(table, random)
         else:
             table.append(["in.number", "<f8", [5, 3]])
     header["arrays"] = msgpack.packb(table)
     if random.random() < 0.7:
         body = random.bytes(room_of(table)) if random.random() < 0.5 else bytes(room_of(table))
-    return put_together(header, body)
+    return frame_of(header, body)
 
 
 def room_of(table):
-    """Bytes of the arrays of a table, as far as it makes sense."""
+    """Bytes of the arrays of a table; entries that are malformed need none."""
     size = 0
     for entry in table:
         try:
@@ -116,17 +116,17 @@ def room_of(table):
     return size
 
 
-def taken_apart(frame):
+def header_and_body(frame):
     size = PREFIX.unpack_from(frame)[1]
     header = msgpack.unpackb(bytes(frame[PREFIX.size : PREFIX.size + size]))
     return header, frame[aligned(PREFIX.size + size) :]
 
 
-def put_together(header, body):
+def frame_of(header, body):
     packed = msgpack.packb(header)
-    first = aligned(PREFIX.size + len(packed))
-    made = bytearray(first + len(body))
-    PREFIX.pack_into(made, 0, b"qnt3", len(packed), len(made), zlib.crc32(packed))
-    made[PREFIX.size : PREFIX.size + len(packed)] = packed
-    made[first:] = body
-    return made
+    start = aligned(PREFIX.size + len(packed))
+    frame = bytearray(start + len(body))
+    PREFIX.pack_into(frame, 0, b"qnt3", len(packed), len(frame), zlib.crc32(packed))
+    frame[PREFIX.size : PREFIX.size + len(packed)] = packed
+    frame[start:] = body
+    return frame

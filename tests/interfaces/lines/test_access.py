@@ -33,11 +33,12 @@ def endpoint():
 
 @pytest.fixture
 def coupler(endpoint, files):
-    mine = files(COUPLER)
+    security = files(COUPLER)
     rights = access(
-        common_name(mine.certificate), {name: [topic_of(text)] for name, text in SECRETS.items()}
+        common_name(security.certificate),
+        {name: [topic_of(text)] for name, text in SECRETS.items()},
     )
-    session = Session(endpoint, True, "coupler", mine, None, access=rights)
+    session = Session(endpoint, True, "coupler", security, None, access=rights)
     session.foreign = ForeignMessages(session.zenoh, session.dropped)
     awaited = dict.fromkeys(SECRETS, "toy")
     session.admission = Admission(session.zenoh, awaited, (), session.foreign, endpoint)
@@ -53,12 +54,12 @@ def coupler(endpoint, files):
 
 def test_a_certificate_of_the_component_is_admitted_and_messages_pass(coupler, endpoint, files):
     line = coupler.lines["pong"]
-    other = join(endpoint, "pong", WHO, files("pong"))
-    other.send({"order": "hello"}, {})
+    pong = join(endpoint, "pong", WHO, files("pong"))
+    pong.send({"order": "hello"}, {})
     assert line.receive(5.0).order == "hello"
     line.send({"order": "go"}, {})
-    assert other.receive(5.0).order == "go"
-    other.close()
+    assert pong.receive(5.0).order == "go"
+    pong.close()
     limit = time.monotonic() + 5.0
     while not line.partner_has_left():
         assert time.monotonic() < limit
@@ -104,7 +105,7 @@ def test_a_component_neither_hears_nor_disturbs_another_though_it_knows_the_secr
     from zenoh import handlers
 
     line = coupler.lines["pong"]
-    other = connect(endpoint, "pong", files("pong"), SECRETS["pong"])
+    pong = connect(endpoint, "pong", files("pong"), SECRETS["pong"])
     spy = Session(endpoint, False, "pong", files("ping"), SECRETS["pong"])
     overheard = spy.zenoh.declare_subscriber(f"{spy.root}/**", handlers.FifoChannel(100))
     forged = ZenohLine(spy, "r1", "coupler")
@@ -112,8 +113,8 @@ def test_a_component_neither_hears_nor_disturbs_another_though_it_knows_the_secr
     for n in range(5):
         forged.send({"order": "forged"}, {})
         line.send({"order": "advance", "n": n}, {})
-        assert other.receive(5.0).header["n"] == n
-        other.send({"order": "done", "n": n}, {})
+        assert pong.receive(5.0).header["n"] == n
+        pong.send({"order": "done", "n": n}, {})
         assert line.receive(5.0).header["n"] == n
     heard = [sample.payload.to_bytes() for sample in iter(overheard.try_recv, None)]
     assert not [frame for frame in heard if b"advance" in frame]
@@ -121,4 +122,4 @@ def test_a_component_neither_hears_nor_disturbs_another_though_it_knows_the_secr
     time.sleep(0.2)
     assert line.peek() is None and not line.partner_has_left()
     assert coupler.dropped.count() == 0  # zenoh drops them before
-    other.close()
+    pong.close()

@@ -1,4 +1,4 @@
-"""Messages from outside a run reach nobody in it; who joins by hand is admitted once."""
+"""Messages from outside a run reach nobody in it; a component that joins is admitted once."""
 
 import json
 import time
@@ -62,7 +62,7 @@ def test_strangers_neither_send_nor_overhear(coupler, stranger, endpoint):
     from zenoh import CongestionControl, handlers
 
     line = ZenohLine(coupler, "r1", "pong")
-    other = connect(endpoint, "pong", None, SECRET)
+    pong = connect(endpoint, "pong", None, SECRET)
     line.wait_for_partner(10.0)
     overheard = stranger.declare_subscriber("**", handlers.FifoChannel(100))
     alive = stranger.liveliness().declare_token("quintet/alive/pong")
@@ -74,9 +74,9 @@ def test_strangers_neither_send_nor_overhear(coupler, stranger, endpoint):
     alive.undeclare()
     for n in range(20):
         line.send({"order": "advance", "n": n}, {"a": np.full(3, float(n))})
-        message = other.receive(5.0)
+        message = pong.receive(5.0)
         assert message.header["n"] == n and (message.fields["a"] == n).all()
-        other.send({"order": "done", "n": n}, {})
+        pong.send({"order": "done", "n": n}, {})
         assert line.receive(5.0).header["n"] == n
     reports, expected = "", 3 * (len(KEYS) - 4)  # `@...` and `*/*/...` reach nobody
     deadline = time.monotonic() + 10.0
@@ -87,7 +87,7 @@ def test_strangers_neither_send_nor_overhear(coupler, stranger, endpoint):
     assert coupler.foreign.count >= expected
     keys = [str(sample.key_expr) for sample in iter(overheard.try_recv, None)]
     assert keys and set(keys) <= set(KEYS)
-    other.close()
+    pong.close()
 
 
 def test_a_flood_costs_little_and_is_reported_now_and_then(coupler, stranger):
@@ -109,36 +109,36 @@ def test_a_flood_costs_little_and_is_reported_now_and_then(coupler, stranger):
 
 def test_who_is_awaited_joins_once(coupler, endpoint):
     line = ZenohLine(coupler, "r1", "pong")
-    other = join(endpoint, "pong", WHO)
-    other.send({"order": "hello"}, {})
+    pong = join(endpoint, "pong", WHO)
+    pong.send({"order": "hello"}, {})
     assert line.receive(5.0).order == "hello"
     began = time.monotonic()
     with pytest.raises(LineError, match=r"pong has joined already \(process 7 on here\)"):
         join(endpoint, "pong", {**WHO, "pid": 8})
     assert time.monotonic() - began < 3.0
     line.send({"order": "go"}, {})
-    assert other.receive(5.0).order == "go"  # the second one has ended nothing
+    assert pong.receive(5.0).order == "go"  # the second one has ended nothing
     assert "1 request(s) to join were refused" in coupler.foreign.look()
-    other.close()
+    pong.close()
 
 
 def test_whose_former_process_has_died_joins_with_another_secret(coupler, endpoint):
-    before = ZenohLine(coupler, "r1", "pong")
+    former_line = ZenohLine(coupler, "r1", "pong")
     former = join(endpoint, "pong", WHO)
     coupler.admission.await_join("pong", "an0ther")
     line = ZenohLine(coupler.under("an0ther"), "r1", "pong")
-    before.send({"order": "go"}, {})  # which the former process alone hears
-    other = join(endpoint, "pong", {**WHO, "pid": 8})
+    former_line.send({"order": "go"}, {})  # which the former process alone hears
+    pong = join(endpoint, "pong", {**WHO, "pid": 8})
     with pytest.raises(LineError, match=r"pong has joined already \(process 8 on here\)"):
         join(endpoint, "pong", WHO)
     former.send({"order": "late"}, {})
-    other.send({"order": "hello"}, {})
+    pong.send({"order": "hello"}, {})
     former.close()
     assert line.receive(5.0).order == "hello"
     line.send({"order": "load"}, {})
-    assert other.receive(5.0).order == "load"
+    assert pong.receive(5.0).order == "load"
     assert line.peek() is None and not line.partner_has_left()
-    other.close()
+    pong.close()
     limit = time.monotonic() + 5.0
     while not line.partner_has_left():
         assert time.monotonic() < limit
@@ -174,10 +174,10 @@ def test_a_malformed_request_is_refused(coupler, stranger, request_bytes):
 
 def test_where_no_run_answers_a_join_says_so(endpoint, monkeypatch):
     monkeypatch.setattr("quintet.interfaces.lines.admission.ANSWERING", 1.0)
-    other = Session(endpoint, True, "coupler", None, SECRET)  # which admits nobody
+    session = Session(endpoint, True, "coupler", None, SECRET)  # which admits nobody
     with pytest.raises(LineError, match="no run answered within 1 s"):
         join(endpoint, "pong", WHO)
-    other.close()
+    session.close()
 
 
 def test_a_component_of_a_former_run_reaches_nobody(coupler, endpoint):
@@ -194,23 +194,23 @@ def test_a_component_of_a_former_run_reaches_nobody(coupler, endpoint):
 
 
 def test_a_join_may_begin_before_its_run(endpoint, monkeypatch):
-    said, opened = [], []
+    messages, opened = [], []
 
     def begin(text):
-        said.append(text)
+        messages.append(text)
         session = Session(endpoint, True, "coupler", None, SECRET)
         foreign = ForeignMessages(session.zenoh)
         opened.extend([session, admission(session, endpoint, foreign)])
         opened.append(ZenohLine(session, "r1", "pong"))
 
-    other = join(endpoint, "pong", WHO, None, begin)
-    assert said == [f"nobody listens at {endpoint} yet; waiting for up to 10 s"]
-    other.close()
+    pong = join(endpoint, "pong", WHO, None, begin)
+    assert messages == [f"nobody listens at {endpoint} yet; waiting for up to 10 s"]
+    pong.close()
     opened[0].close()
     join_secret.remove(endpoint, ["pong"])
     monkeypatch.setattr("quintet.interfaces.lines.zenoh.STARTING", 0.3)
     with pytest.raises(LineError, match="nobody listens on port"):
-        join(endpoint, "pong", WHO, None, said.append)
+        join(endpoint, "pong", WHO, None, messages.append)
 
 
 def test_who_asks_before_the_run_has_begun_is_answered_when_it_has(endpoint):
@@ -219,10 +219,10 @@ def test_who_asks_before_the_run_has_begun_is_answered_when_it_has(endpoint):
     waiting = Admission(session.zenoh, {"pong": "toy"}, (), foreign, endpoint)
     waiting.await_join("pong", "a new secret")
     with ThreadPoolExecutor() as pool:
-        asked = pool.submit(ask_to_join, session.zenoh, endpoint, "pong", WHO)
+        future = pool.submit(ask_to_join, session.zenoh, endpoint, "pong", WHO)
         time.sleep(0.3)
-        assert not asked.done()
+        assert not future.done()
         waiting.open()
-        assert asked.result(5.0) == "a new secret"
+        assert future.result(5.0) == "a new secret"
     session.close()
     join_secret.remove(endpoint, ["pong"])

@@ -32,11 +32,11 @@ def test_frames_are_opened_as_they_were():
 
 
 @pytest.mark.parametrize(
-    "other", [codes("an0ther"), codes(sender="ping"), codes(sender="coupler", receiver="pong")]
+    "sender", [codes("an0ther"), codes(sender="ping"), codes(sender="coupler", receiver="pong")]
 )
-def test_codes_of_another_secret_component_or_direction_are_dropped(other):
+def test_codes_of_another_secret_component_or_direction_are_dropped(sender):
     dropped = DroppedFrames()
-    assert codes().open(sealed(other), dropped) is None
+    assert codes().open(sealed(sender), dropped) is None
     assert dropped.invalid == 1
 
 
@@ -71,12 +71,12 @@ def test_every_flipped_bit_is_noticed():
 
 
 def test_drops_are_told_now_and_then():
-    told = []
-    dropped = DroppedFrames(tell=told.append)
+    reports = []
+    dropped = DroppedFrames(tell=reports.append)
     for _ in range(100):
         assert codes().open(b"1234567", dropped) is None
         dropped.report()
-    assert told == [
+    assert reports == [
         "1 message(s) on keys of the run had no valid authentication code and were dropped: they "
         "were damaged on the way, or another program sent them."
     ]

@@ -13,11 +13,11 @@ from quintet.interfaces.serving.serve import answer
 
 
 class ByHand(FramedLine):
-    """A line that receives what a test lays before it."""
+    """A line that receives the frames that a test appends."""
 
-    def __init__(self, run="r1", gone=""):
+    def __init__(self, run="r1", cause=""):
         super().__init__(run, "coupler")
-        self.frames, self.sent, self.gone = [], [], gone
+        self.frames, self.sent, self.cause = [], [], cause
 
     def lay(self, seq, run="r1", **header):
         self.frames.append(encode({"order": "done", "seq": seq, "run": run, **header}, {}, None))
@@ -29,7 +29,7 @@ class ByHand(FramedLine):
         return self.frames.pop(0) if self.frames else None
 
     def _broken(self):
-        return self.gone
+        return self.cause
 
     def close(self):
         pass
@@ -56,10 +56,10 @@ def test_a_gap_is_refused(seq):
         line.receive(0.1)
 
 
-@pytest.mark.parametrize("again", [0, 1])
-def test_a_message_that_arrives_twice_is_used_once(again):
+@pytest.mark.parametrize("repeated", [0, 1])
+def test_a_message_that_arrives_twice_is_used_once(repeated):
     line = ByHand()
-    for seq in (0, 1, again, 2):
+    for seq in (0, 1, repeated, 2):
         line.lay(seq, n=seq)
     assert [line.receive(0.1).header["n"] for _ in range(3)] == [0, 1, 2]
     assert not line.sent
@@ -136,7 +136,7 @@ def test_the_deadline_is_kept(seconds):
 
 
 def test_a_broken_line_says_why_before_the_deadline():
-    line = ByHand(gone="pong is gone")
+    line = ByHand(cause="pong is gone")
     began = time.perf_counter()
     with pytest.raises(LineError, match="pong is gone"):
         line.receive(60.0)
@@ -167,10 +167,10 @@ def test_every_message_says_run_sender_and_number():
     line = ByHand("r1")
     for _ in range(2):
         line.send({"order": "advance", "seq": 99, "run": "forged"}, {})
-    other = ByHand("r1")
-    other.frames = list(line.sent)
+    receiver = ByHand("r1")
+    receiver.frames = list(line.sent)
     for seq in range(2):
-        header = other.receive(0.1).header
+        header = receiver.receive(0.1).header
         assert (header["seq"], header["run"], header["from"]) == (seq, "r1", "coupler")
 
 
@@ -196,9 +196,9 @@ def test_a_message_that_is_too_large_is_refused_before_memory_is_taken_for_it():
         line.send({"order": "done"}, {"few": np.zeros(3), "out.number": huge})
     line.send({"order": "done"}, {"few": np.zeros(3)})
     assert len(line.sent) == 1  # and numbered 0: nothing was lost
-    other = ByHand()
-    other.frames = list(line.sent)
-    assert other.receive(0.1).header["seq"] == 0
+    receiver = ByHand()
+    receiver.frames = list(line.sent)
+    assert receiver.receive(0.1).header["seq"] == 0
 
 
 def test_what_is_no_array_is_named():

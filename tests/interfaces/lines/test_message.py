@@ -1,4 +1,4 @@
-"""A message comes back as it went; bytes that are none are refused, whatever they are."""
+"""A message is decoded as it was encoded; other bytes are refused."""
 
 import zlib
 
@@ -12,18 +12,18 @@ from quintet.interfaces.lines.message import PREFIX, decode, encode, require_fin
 
 
 def frame(arrays, body=b"", header=None, **prefix):
-    """A frame made by hand, as wrong as asked for."""
+    """A frame by hand, with errors on request."""
     usual = {"order": "x", "arrays": msgpack.packb(arrays)}
     packed = msgpack.packb(usual if header is None else header)
     start = -(-(PREFIX.size + len(packed)) // ALIGN) * ALIGN
     total = start + len(body)
-    made = bytearray(total)
+    buffer = bytearray(total)
     magic, size = prefix.get("magic", b"qnt3"), prefix.get("size", len(packed))
     checksum = zlib.crc32(packed[:size])
-    PREFIX.pack_into(made, 0, magic, size, prefix.get("total", total), checksum)
-    made[PREFIX.size : PREFIX.size + len(packed)] = packed
-    made[start:] = body
-    return made
+    PREFIX.pack_into(buffer, 0, magic, size, prefix.get("total", total), checksum)
+    buffer[PREFIX.size : PREFIX.size + len(packed)] = packed
+    buffer[start:] = body
+    return buffer
 
 
 @pytest.mark.parametrize("name", sorted(DTYPES))
@@ -33,10 +33,10 @@ def test_every_type_and_shape_comes_back_bit_for_bit(name, shape):
     array = random.integers(0, 2, shape).astype(name)
     if array.dtype.kind == "f":
         array = array * np.asarray(random.random(shape), name)
-    found = decode(encode({"order": "x"}, {"a.b": array, "z": np.arange(3.0)}, None))
-    assert found.fields["a.b"].dtype == array.dtype and found.fields["a.b"].shape == shape
-    assert found.fields["a.b"].tobytes() == array.tobytes()
-    assert (found.fields["z"] == np.arange(3.0)).all()
+    message = decode(encode({"order": "x"}, {"a.b": array, "z": np.arange(3.0)}, None))
+    assert message.fields["a.b"].dtype == array.dtype and message.fields["a.b"].shape == shape
+    assert message.fields["a.b"].tobytes() == array.tobytes()
+    assert (message.fields["z"] == np.arange(3.0)).all()
 
 
 @pytest.mark.parametrize(
@@ -49,16 +49,16 @@ def test_every_type_and_shape_comes_back_bit_for_bit(name, shape):
     ],
 )
 def test_arrays_that_are_not_contiguous_come_back(array):
-    found = decode(encode({}, {"a": array}, None)).fields["a"]
-    assert found.shape == array.shape and (found == array).all()
+    decoded = decode(encode({}, {"a": array}, None)).fields["a"]
+    assert decoded.shape == array.shape and (decoded == array).all()
 
 
 def test_a_header_comes_back_and_arrays_are_read_only():
     header = {"order": "advance", "dt": 0.1, "window": 3, "list": [1, "two", None, True]}
-    found = decode(encode(header, {"a": np.zeros(3)}, None))
-    assert found.header == header and found.order == "advance"
+    message = decode(encode(header, {"a": np.zeros(3)}, None))
+    assert message.header == header and message.order == "advance"
     with pytest.raises(ValueError, match="read-only"):
-        found.fields["a"][0] = 1.0
+        message.fields["a"][0] = 1.0
 
 
 @pytest.mark.parametrize("kind", [bytes, bytearray, lambda frame: np.frombuffer(frame, np.uint8)])
@@ -79,18 +79,18 @@ def test_a_frame_keeps_its_size_while_arrays_of_its_message_live():
 
 def test_every_array_is_aligned_and_frames_are_used_again():
     fields = {f"f{n}": np.arange(n, dtype="|u1") for n in (1, 7, 16, 17)}
-    made = encode({"order": "x"}, fields, None)
-    found = decode(made)
-    base = np.frombuffer(made, np.uint8).ctypes.data
-    for array in found.fields.values():
+    encoded = encode({"order": "x"}, fields, None)
+    message = decode(encoded)
+    base = np.frombuffer(encoded, np.uint8).ctypes.data
+    for array in message.fields.values():
         assert (array.ctypes.data - base) % ALIGN == 0
-    del found, array
-    assert encode({"order": "x"}, fields, made) is made
-    assert encode({"order": "longer " * 9}, fields, made) is not made
+    del message, array
+    assert encode({"order": "x"}, fields, encoded) is encoded
+    assert encode({"order": "longer " * 9}, fields, encoded) is not encoded
 
 
 @pytest.mark.parametrize(
-    ("made", "words"),
+    ("data", "words"),
     [
         (b"", "at least 20 bytes; found 0"),
         (b"qnt1" * 3, "at least 20 bytes; found 12"),
@@ -125,9 +125,9 @@ def test_every_array_is_aligned_and_frames_are_used_again():
         (frame([[f"a{n}", "<f8", [0]] for n in range(1001)]), "at most 1000 arrays; found 1001"),
     ],
 )
-def test_what_is_no_message_is_refused(made, words):
+def test_what_is_no_message_is_refused(data, words):
     with pytest.raises(MessageError) as error:
-        decode(made)
+        decode(data)
     assert words in str(error.value)
 
 
@@ -140,14 +140,14 @@ def test_types_that_may_not_cross_are_refused_by_the_sender(array):
 
 
 def test_another_shape_than_expected_is_refused_and_a_failure_is_not():
-    made = encode({"order": "done"}, {"f": np.zeros((4, 3))}, None)
-    assert decode(made, {"f": (4, 3)}).fields["f"].shape == (4, 3)
+    encoded = encode({"order": "done"}, {"f": np.zeros((4, 3))}, None)
+    assert decode(encoded, {"f": (4, 3)}).fields["f"].shape == (4, 3)
     with pytest.raises(MessageError, match=r"field f: expected shape \(5, 3\), shape \(4, 3\)"):
-        decode(made, {"f": (5, 3)})
+        decode(encoded, {"f": (5, 3)})
     with pytest.raises(MessageError, match=r"field g: expected shape \(1,\), nothing arrived"):
-        decode(made, {"f": (4, 3), "g": (1,)})
+        decode(encoded, {"f": (4, 3), "g": (1,)})
     with pytest.raises(MessageError, match="field f: expected nothing"):
-        decode(made, {})
+        decode(encoded, {})
     assert decode(encode({"order": "failed"}, {}, None), {"f": (4, 3)}).order == "failed"
 
 

@@ -54,8 +54,8 @@ def carried(tmp_path_factory):
     program.write_text(RANKS)
     launcher = str(MPIEXEC) if MPIEXEC.exists() else "mpiexec"
     command = [launcher, "-n", "2", sys.executable, "-m", "mpi4py", str(program), str(folder)]
-    done = subprocess.run(command, timeout=60, capture_output=True, text=True)
-    assert done.returncode == 0, done.stderr
+    process = subprocess.run(command, timeout=60, capture_output=True, text=True)
+    assert process.returncode == 0, process.stderr
     return folder
 
 
@@ -76,6 +76,10 @@ def test_a_waiting_rank_leaves_the_processor_to_others(carried):
 
 def test_a_launcher_of_another_library_is_refused():
     code = "from quintet.interfaces.lines import mpi; mpi.self_check(3)"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=30)
-    assert done.returncode == 1
-    assert "MPI started 1 ranks where 3 were launched: the launcher and the library" in done.stderr
+    process = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, timeout=30
+    )
+    assert process.returncode == 1
+    assert (
+        "MPI started 1 ranks where 3 were launched: the launcher and the library" in process.stderr
+    )

@@ -7,7 +7,7 @@ from functools import partial
 
 import numpy as np
 import pytest
-from frames import in_header, mutated, taken_apart
+from frames import header_and_body, in_header, mutated
 from started import write_scene
 
 from quintet.coupler.coupling.group import assemble
@@ -44,8 +44,8 @@ class Silent:
         return True
 
     def end_window(self, coupling):
-        for one in coupling.components.values():
-            one.call("view")
+        for component in coupling.components.values():
+            component.call("view")
 
     def wants_end(self):
         return False
@@ -67,7 +67,7 @@ class Unwatched:
 def run_of(scene, tap=lambda line: None):
     """Run a scene in memory, with its lines tapped; return the lines."""
     connection = InMemory(scene, Unwatched())
-    lines = [one.line for one in connection.participants.values()]
+    lines = [component.line for component in connection.participants.values()]
     for line in lines:
         tap(line)
     exchange = scene.exchange()
@@ -79,14 +79,14 @@ def run_of(scene, tap=lambda line: None):
         scene.asked_outputs(),
         Judgement(coupling.ledger.accounts),
     )
-    for one in connection.participants.values():
-        state = one.save()
-        one.order_keep(0)
-        one.receive()
-        one.order_rewind(0)
-        one.receive()
-        one.load(state, one.window)
-        one.call("finish")
+    for component in connection.participants.values():
+        state = component.save()
+        component.order_keep(0)
+        component.receive()
+        component.order_rewind(0)
+        component.receive()
+        component.load(state, component.window)
+        component.call("finish")
     return lines
 
 
@@ -107,14 +107,14 @@ def sent(scene):
 
 @pytest.fixture(autouse=True)
 def little_memory():
-    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     yield
-    assert 1024 * (resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before) < MEMORY
+    assert 1024 * (resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - peak) < MEMORY
 
 
 @pytest.fixture(autouse=True)
 def numbers_that_overflow():
-    """What a component or a sum makes of absurd numbers may warn: that is no fault here."""
+    """Allow warnings of overflow, as the numbers may be absurd."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)
         yield
@@ -141,17 +141,17 @@ def test_a_component_answers_every_order_in_a_sentence(scene, sent, count):
     for _ in range(count):
         line = MemoryLine("", "pong")
         server = Server(build(scene.components["pong"].manifest, GO), "pong")
-        which = random.integers(len(orders))
+        index = random.integers(len(orders))
         began = time.monotonic()
-        for number, frame in enumerate(orders[: which + 1]):
-            line.far.inbox.append(mutated(frame, random) if number == which else frame)
+        for number, frame in enumerate(orders[: index + 1]):
+            line.far.inbox.append(mutated(frame, random) if number == index else frame)
             try:
                 goes_on = answer(server, line.far, line.far.receive(0.0))
             except QuintetError:
                 goes_on = False
                 continue
-            said = decode(line.far.outbox.pop()).header
-            assert said["order"] == "done" or not said["traceback"], said["traceback"]
+            header = decode(line.far.outbox.pop()).header
+            assert header["order"] == "done" or not header["traceback"], header["traceback"]
         ended += not goes_on
         assert time.monotonic() - began < LONGEST
     assert ended > 0.5 * count
@@ -162,7 +162,7 @@ def test_a_component_is_built_from_nothing_else_than_its_parameters(scene, count
     random, refused = np.random.default_rng(14), 0
     go = encode({"order": "go", **GO, "params": {}, "folder": "/none"}, {}, None)
     for _ in range(count // 4):
-        header, _ = taken_apart(in_header(go, random))
+        header, _ = header_and_body(in_header(go, random))
         try:
             build(scene.components["pong"].manifest, header)
         except QuintetError as error:
@@ -187,20 +187,20 @@ def test_a_live_endpoint_refuses_them_alike(sent, count):
     endpoint = f"tcp/127.0.0.1:{free_port()}"
     ours = Session(endpoint, True, "coupler", None)
     line = ZenohLine(ours, "", "pong")
-    other = ZenohLine(Session(endpoint, False, "pong", None), "", "coupler", True)
-    other.wait_for_partner(10.0)
+    pong = ZenohLine(Session(endpoint, False, "pong", None), "", "coupler", True)
+    pong.wait_for_partner(10.0)
     for _ in range(count):
         frame = mutated(sent[1][random.integers(len(sent[1]))], random)
         if is_old(frame, line._received):  # it would be dropped without a word
             refused += 1
             continue
-        other._put(bytearray(frame) + bytes(other.room))
+        pong._put(bytearray(frame) + bytes(pong.room))
         try:
             line.receive(30.0)
         except QuintetError as error:
             refused += 1
             assert "nothing arrived" not in str(error)
-    other.close()
+    pong.close()
     ours.close()
     assert refused > 0.9 * count
 
@@ -212,16 +212,16 @@ def test_a_live_endpoint_drops_frames_that_are_forged_damaged_or_repeated(sent, 
     endpoint = f"tcp/127.0.0.1:{free_port()}"
     ours = Session(endpoint, True, "coupler", None)
     line = ZenohLine(ours, "", "pong")
-    other = ZenohLine(Session(endpoint, False, "pong", None), "", "coupler", True)
-    other.wait_for_partner(10.0)
-    publish = other._publish
+    pong = ZenohLine(Session(endpoint, False, "pong", None), "", "coupler", True)
+    pong.wait_for_partner(10.0)
+    publish = pong._publish
     for n in range(count):
         forged = mutated(sent[1][random.integers(len(sent[1]))], random)
         publish(bytearray(forged) + random.bytes(random.integers(40)))
         if n % 50 == 0:
             copies = []
-            other._publish = lambda frame, copies=copies: copies.append(bytearray(frame))
-            other.send({"order": "done", "n": n}, {})
+            pong._publish = lambda frame, copies=copies: copies.append(bytearray(frame))
+            pong.send({"order": "done", "n": n}, {})
             for frame in (*copies, *copies):
                 publish(frame)
             assert line.receive(30.0).header["n"] == n
@@ -230,7 +230,7 @@ def test_a_live_endpoint_drops_frames_that_are_forged_damaged_or_repeated(sent, 
     while ours.dropped.count() < count + repeated and time.monotonic() < deadline:
         assert line.peek() is None
     assert (ours.dropped.invalid, ours.dropped.repeated) == (count, repeated)
-    other.close()
+    pong.close()
     ours.close()
 
 
@@ -240,25 +240,25 @@ GO = {"params": {"items": 5, "substeps": 3}, "threads": 1}
 class Changing:
     """Changes one of the answers that components send."""
 
-    def __init__(self, which, random):
-        self.which, self.random, self.seen = which, random, 0
+    def __init__(self, index, random):
+        self.index, self.random, self.count = index, random, 0
 
     def tap(self, line):
         line.far._put = partial(self.put, line.far._put)
 
     def put(self, answered, frame):
-        answered(mutated(frame, self.random) if self.seen == self.which else frame)
-        self.seen += 1
+        answered(mutated(frame, self.random) if self.count == self.index else frame)
+        self.count += 1
 
 
 @pytest.mark.parametrize("count", COUNTS)
 def test_the_coupler_meets_every_answer_in_a_sentence(scene, sent, count):
     random, ended, count = np.random.default_rng(13), 0, count // 20
     for _ in range(count):
-        which = random.integers(len(sent[1]))
+        index = random.integers(len(sent[1]))
         began = time.monotonic()
         try:
-            run_of(scene, Changing(which, random).tap)
+            run_of(scene, Changing(index, random).tap)
         except QuintetError as error:
             ended += 1
             assert len(str(error)) < 1 << 17

@@ -1,4 +1,4 @@
-"""What is in the way of a connection is said within seconds, and rightly."""
+"""A failed connection names its cause within seconds."""
 
 import socket
 import subprocess
@@ -76,7 +76,7 @@ def leaf(folder, authority, name, names, *options):
 
 
 def refusal(endpoint, security=None):
-    """What `join` says of an endpoint, and that it does so soon."""
+    """Join an endpoint; return the error's text, and check that it came soon."""
     began = time.monotonic()
     with pytest.raises(LineError) as error:
         connect(endpoint, "pong", security)
@@ -96,8 +96,8 @@ def test_a_run_that_can_be_reached_has_nothing_in_the_way(listen, certificates):
 
 def test_a_port_where_nobody_listens(certificates):
     for endpoint in (f"tcp/127.0.0.1:{free_port()}", f"tls/localhost:{free_port()}"):
-        said = refusal(endpoint, certificates[0])
-        assert "nobody listens on port" in said and "has not begun, or it has ended" in said
+        message = refusal(endpoint, certificates[0])
+        assert "nobody listens on port" in message and "has not begun, or it has ended" in message
 
 
 def test_plain_tcp_where_the_run_uses_tls(listen, certificates):
@@ -106,27 +106,29 @@ def test_plain_tcp_where_the_run_uses_tls(listen, certificates):
 
 
 def test_tls_where_the_run_uses_plain_tcp(listen, certificates):
-    said = refusal(f"tls/127.0.0.1:{listen(None)}", certificates[0])
-    assert "listens with plain tcp; tls was tried" in said
+    message = refusal(f"tls/127.0.0.1:{listen(None)}", certificates[0])
+    assert "listens with plain tcp; tls was tried" in message
 
 
 def test_a_run_whose_certificate_is_of_another_authority(listen, certificates):
     ours, foreign = certificates
-    said = refusal(f"tls/localhost:{listen(ours)}", foreign)
-    assert f"not signed by the authority {foreign.authority}" in said
+    message = refusal(f"tls/localhost:{listen(ours)}", foreign)
+    assert f"not signed by the authority {foreign.authority}" in message
 
 
 def test_a_certificate_that_the_run_refuses(listen, certificates):
     ours, foreign = certificates
     mixed = replace(foreign, authority=ours.authority)
-    said = refusal(f"tls/localhost:{listen(ours)}", mixed)
-    assert f"refuses the certificate {foreign.certificate}: its authority did not sign it" in said
+    message = refusal(f"tls/localhost:{listen(ours)}", mixed)
+    assert (
+        f"refuses the certificate {foreign.certificate}: its authority did not sign it" in message
+    )
 
 
 def test_a_certificate_for_another_host(listen, certificates, tmp_path):
-    other = leaf(tmp_path, certificates[0], "other", "DNS:other.example", "-days", "1")
-    said = refusal(f"tls/localhost:{listen(other)}", certificates[0])
-    assert "not valid for localhost. Its subjectAltName must have the host" in said
+    certificate = leaf(tmp_path, certificates[0], "other", "DNS:other.example", "-days", "1")
+    message = refusal(f"tls/localhost:{listen(certificate)}", certificates[0])
+    assert "not valid for localhost. Its subjectAltName must have the host" in message
 
 
 def test_a_certificate_that_has_expired(listen, certificates, tmp_path):
@@ -134,23 +136,23 @@ def test_a_certificate_that_has_expired(listen, certificates, tmp_path):
     past = ("-days", "-1")
     old = leaf(tmp_path, certificates[0], "old", names, *past)
     assert "has expired. Renew it" in refusal(f"tls/localhost:{listen(old)}", certificates[0])
-    said = refusal(f"tls/localhost:{listen(certificates[0])}", old)
-    assert "old.pem: it has expired" in said
+    message = refusal(f"tls/localhost:{listen(certificates[0])}", old)
+    assert "old.pem: it has expired" in message
 
 
 def test_files_that_are_no_certificates(listen, certificates, tmp_path):
     (tmp_path / "none.pem").write_text("nothing")
     wrong = replace(certificates[0], certificate=str(tmp_path / "none.pem"))
-    said = refusal(f"tls/localhost:{listen(certificates[0])}", wrong)
-    assert "must be an authority, a certificate and its key" in said
+    message = refusal(f"tls/localhost:{listen(certificates[0])}", wrong)
+    assert "must be an authority, a certificate and its key" in message
     mismatched = replace(certificates[0], key=certificates[1].key)
-    said = refusal(f"tls/localhost:{listen(certificates[0])}", mismatched)
-    assert "must be an authority, a certificate and its key" in said
+    message = refusal(f"tls/localhost:{listen(certificates[0])}", mismatched)
+    assert "must be an authority, a certificate and its key" in message
 
 
 def test_another_program_at_the_port(program):
-    said = refusal(f"tcp/127.0.0.1:{program(b'HTTP/1.1 400 Bad Request')}")
-    assert "what listens there is no run of quintet (it answers b'HTTP/1.1 400" in said
+    message = refusal(f"tcp/127.0.0.1:{program(b'HTTP/1.1 400 Bad Request')}")
+    assert "what listens there is no run of quintet (it answers b'HTTP/1.1 400" in message
 
 
 @pytest.mark.slow

@@ -55,7 +55,7 @@ def test_silence_is_noticed_and_a_held_lock_is_none(giver):
     signs = {name: SignsOfLife(session, name) for name in ("computes", "stands")}
     processes = {name: giver(endpoint, session.root, name) for name in signs}
     assert [process.stdout.readline() for process in processes.values()] == ["given\n"] * 2
-    # What is stopped before its first sign has arrived would never be silent.
+    # A process that is stopped before its first sign would never count as silent.
     every_sign = f"{session.root}/alive/$*~sign"
     wait_until(lambda: len(list(session.zenoh.liveliness().get(every_sign))) == 2, 5.0)
     assert all(sign.silent_for() == 0.0 for sign in signs.values())

@@ -57,38 +57,38 @@ def hubs():
 def lines(hubs, endpoint, security=None):
     from quintet.interfaces.lines.zenoh import ZenohLine
 
-    near, far = hubs(endpoint, security)
-    one, two = ZenohLine(near, "r1", "water"), ZenohLine(far, "", "coupler")
-    for line in (one, two):
+    coupler, water = hubs(endpoint, security)
+    coupler_line, water_line = ZenohLine(coupler, "r1", "water"), ZenohLine(water, "", "coupler")
+    for line in (coupler_line, water_line):
         line.wait_for_partner(10.0)
-    return one, two
+    return coupler_line, water_line
 
 
 def test_memory_and_zenoh_carry_the_same_bytes(hubs):
-    one, two = lines(hubs, f"tcp/127.0.0.1:{free_port()}")
+    coupler_line, water_line = lines(hubs, f"tcp/127.0.0.1:{free_port()}")
     memory, carried = MemoryLine("r1", "coupler"), []
     put = memory._put
     memory._put = lambda frame: carried.append(bytes(frame)) or put(frame)
     random = np.random.default_rng(0)
     for size in (0, 1, 1000, 200_000):
         fields = {"surface.position": random.random((size, 3)), "n": np.arange(size)}
-        for line in (memory, one):
+        for line in (memory, coupler_line):
             line.send({"order": "advance", "window": size}, fields)
         frame = None
         while frame is None:
-            frame = two._poll()
+            frame = water_line._poll()
         assert bytes(frame) == carried[-1]
 
 
 def test_a_partner_that_leaves_is_noticed_at_once(hubs):
-    one, two = lines(hubs, f"tcp/127.0.0.1:{free_port()}")
-    two.send({"order": "last words"}, {})
+    coupler_line, water_line = lines(hubs, f"tcp/127.0.0.1:{free_port()}")
+    water_line.send({"order": "last words"}, {})
     time.sleep(0.1)
-    two.session.close()
+    water_line.session.close()
     began = time.perf_counter()
-    assert one.receive(30.0).order == "last words"
+    assert coupler_line.receive(30.0).order == "last words"
     with pytest.raises(LineError, match="water is gone"):
-        one.receive(30.0)
+        coupler_line.receive(30.0)
     assert time.perf_counter() - began < 10.0  # by itself zenoh misses a partner after 60 s
 
 
@@ -155,15 +155,15 @@ def test_tls_needs_certificates():
 
 
 def test_messages_cross_mutual_tls(hubs, certificates):
-    one, two = lines(hubs, f"tls/localhost:{free_port()}", certificates[0])
-    one.send({"order": "advance"}, {"a": np.arange(3.0)})
-    assert (two.receive(5.0).fields["a"] == np.arange(3.0)).all()
-    two.send({"order": "done"}, {})
-    assert one.receive(5.0).order == "done"
+    coupler_line, water_line = lines(hubs, f"tls/localhost:{free_port()}", certificates[0])
+    coupler_line.send({"order": "advance"}, {"a": np.arange(3.0)})
+    assert (water_line.receive(5.0).fields["a"] == np.arange(3.0)).all()
+    water_line.send({"order": "done"}, {})
+    assert coupler_line.receive(5.0).order == "done"
 
 
-@pytest.mark.parametrize("who", ["no certificate", "a foreign certificate", "plain tcp"])
-def test_strangers_are_refused(certificates, who):
+@pytest.mark.parametrize("stranger", ["no certificate", "a foreign certificate", "plain tcp"])
+def test_strangers_are_refused(certificates, stranger):
     import json
 
     import zenoh
@@ -173,14 +173,14 @@ def test_strangers_are_refused(certificates, who):
     ours, foreign = certificates
     port = free_port()
     session = Session(f"tls/localhost:{port}", True, "coupler", ours)
-    endpoint = f"tcp/localhost:{port}" if who == "plain tcp" else f"tls/localhost:{port}"
-    shown = {"no certificate": ours, "a foreign certificate": foreign, "plain tcp": None}[who]
-    config = configuration(endpoint, False, shown)
+    endpoint = f"tcp/localhost:{port}" if stranger == "plain tcp" else f"tls/localhost:{port}"
+    files = {"no certificate": ours, "a foreign certificate": foreign, "plain tcp": None}[stranger]
+    config = configuration(endpoint, False, files)
     config.insert_json5("connect/timeout_ms", "700")
-    if shown:
+    if files:
         tls = {"root_ca_certificate": ours.authority, "verify_name_on_connect": True}
-        if who == "a foreign certificate":
-            pair = {"connect_certificate": shown.certificate, "connect_private_key": shown.key}
+        if stranger == "a foreign certificate":
+            pair = {"connect_certificate": files.certificate, "connect_private_key": files.key}
             tls |= {"enable_mtls": True, **pair}
         config.insert_json5("transport/link/tls", json.dumps(tls))
     with pytest.raises(zenoh.ZError):

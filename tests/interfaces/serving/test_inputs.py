@@ -1,4 +1,4 @@
-"""Between the ends of a window inputs are what their law says: exact where it can be."""
+"""Inputs between the ends of a window follow their law, exactly where it can be exact."""
 
 import itertools
 
@@ -40,24 +40,26 @@ def moved(ends=True):
 
 @pytest.mark.parametrize("count", [1, 2, 7, 50])
 def test_a_cubic_path_is_given_exactly(count):
-    for begin, end, given in between(moved(), count):
+    for begin, end, fields in between(moved(), count):
         middle = cubic(0.5 * (begin + end))[0]
-        np.testing.assert_allclose(given["p.position"], middle, rtol=0, atol=1e-14)
+        np.testing.assert_allclose(fields["p.position"], middle, rtol=0, atol=1e-14)
 
 
 @pytest.mark.parametrize("count", [1, 7, 50])
 def test_the_mean_velocities_add_up_to_the_displacement(count):
     inputs = moved()
-    total = sum(given["p.velocity"] * (end - begin) for begin, end, given in between(inputs, count))
+    total = sum(
+        fields["p.velocity"] * (end - begin) for begin, end, fields in between(inputs, count)
+    )
     displacement = cubic(WINDOW)[0] - cubic(0.0)[0]
     np.testing.assert_allclose(total, displacement, rtol=0, atol=4e-16 * count + 1e-15)
 
 
 def test_beyond_the_last_known_end_a_position_goes_on_by_its_velocity():
     x, v = cubic(0.0)
-    for begin, end, given in between(moved(ends=False), 5):
-        np.testing.assert_allclose(given["p.position"], x + 0.5 * (begin + end) * v, atol=1e-15)
-        np.testing.assert_allclose(given["p.velocity"], v, rtol=1e-13)
+    for begin, end, fields in between(moved(ends=False), 5):
+        np.testing.assert_allclose(fields["p.position"], x + 0.5 * (begin + end) * v, atol=1e-15)
+        np.testing.assert_allclose(fields["p.velocity"], v, rtol=1e-13)
 
 
 def test_a_value_without_a_rate_goes_straight_or_stays():
@@ -66,8 +68,8 @@ def test_a_value_without_a_rate_goes_straight_or_stays():
     inputs.arrive({"h.temperature": first}, (), WINDOW)
     assert (inputs.over(0.1, 0.2, WINDOW)["h.temperature"] == first).all()
     inputs.arrive({"h.temperature": last}, ("h.temperature",), WINDOW)
-    given = inputs.over(0.5 * WINDOW, WINDOW, WINDOW)["h.temperature"]
-    np.testing.assert_allclose(given, first + 0.75 * (last - first), rtol=1e-15)
+    temperature = inputs.over(0.5 * WINDOW, WINDOW, WINDOW)["h.temperature"]
+    np.testing.assert_allclose(temperature, first + 0.75 * (last - first), rtol=1e-15)
 
 
 def test_what_was_an_end_is_the_next_beginning():
@@ -82,15 +84,15 @@ def test_an_impulse_is_given_as_the_rate_that_has_its_integral():
     assert inputs.constant
     inputs.arrive({"q.force": np.full((2, 3), 3.0)}, (), WINDOW)
     assert inputs.constant
-    for begin, end, given in between(inputs, 7):
-        np.testing.assert_allclose(given["q.force"] * WINDOW, 3.0, rtol=1e-15)
+    for begin, end, fields in between(inputs, 7):
+        np.testing.assert_allclose(fields["q.force"] * WINDOW, 3.0, rtol=1e-15)
         assert end > begin
 
 
 def test_what_is_given_may_not_be_written_into():
     inputs = moved()
-    for _, _, given in between(inputs, 3):
-        for array in given.values():
+    for _, _, fields in between(inputs, 3):
+        for array in fields.values():
             with pytest.raises(ValueError, match="read-only"):
                 array[0] = 0.0
 
@@ -107,8 +109,8 @@ def test_a_field_that_is_not_taken_or_changes_its_rows_is_refused():
 
 
 def test_saved_inputs_come_back_bit_for_bit():
-    inputs, other = moved(), Inputs((MOVED,))
-    other.load(inputs.save())
-    for begin, end, given in between(inputs, 3):
-        again = other.over(begin, end, WINDOW)
-        assert all((again[key] == given[key]).all() for key in given)
+    inputs, loaded = moved(), Inputs((MOVED,))
+    loaded.load(inputs.save())
+    for begin, end, fields in between(inputs, 3):
+        loaded_fields = loaded.over(begin, end, WINDOW)
+        assert all((loaded_fields[key] == fields[key]).all() for key in fields)

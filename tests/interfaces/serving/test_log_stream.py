@@ -1,4 +1,4 @@
-"""A log that finds no room leaves out what is printed, and ends nothing."""
+"""A log without room drops printed lines and ends no process."""
 
 import subprocess
 import sys

@@ -1,4 +1,4 @@
-"""What a component without a view shows: bodies, meshes or points whose positions it gives."""
+"""The view of a component without one: bodies, meshes or points whose positions it gives."""
 
 import numpy as np
 import pytest
@@ -12,7 +12,7 @@ from quintet.interfaces.serving.port_view import look_at, port_fields
 
 
 class Rods(Component):
-    """Gives what its port has, at four places."""
+    """Gives the fields of its port at four points."""
 
     def __init__(self, port, static):
         self.gives, self.static = (port,), static
@@ -21,7 +21,7 @@ class Rods(Component):
         return self.static
 
     def give(self, wanted):
-        fields = {f"{self.gives[0].name}.{one.name}": one for one in self.gives[0].fields}
+        fields = {f"{self.gives[0].name}.{field.name}": field for field in self.gives[0].fields}
         return {key: np.ones((4, *fields[key].shape)) for key in wanted}
 
     def stable_dt(self):
@@ -41,9 +41,9 @@ def _prescribed(bodies):
 
 def test_points_show_their_fields_with_units():
     port = Port("rod", (Field("flow", (), "W", "impulse"), POSITION, TEMPERATURE, ACTIVE))
-    shown, units = look_at(Rods(port, {}))
-    assert shown.keys() == {"points", "temperature"} and units == {"temperature": "K"}
-    assert [one.name for one in port_fields((port,))] == ["temperature"]
+    view, units = look_at(Rods(port, {}))
+    assert view.keys() == {"points", "temperature"} and units == {"temperature": "K"}
+    assert [field.name for field in port_fields((port,))] == ["temperature"]
 
 
 def test_a_port_without_positions_shows_nothing():
@@ -54,8 +54,8 @@ def test_a_port_without_positions_shows_nothing():
 
 def test_a_mesh_shows_its_faces():
     corner = np.array([[0.0, 1.0, 2.0, 3.0], [0.0, 1.0, 2.0, -1.0]])
-    shown, _ = look_at(Rods(FACES, {"faces.corner": corner, "faces.start": np.ones((4, 3))}))
-    assert shown["cells"].tolist() == corner.tolist() and shown["velocity"].shape == (4, 3)
+    view, _ = look_at(Rods(FACES, {"faces.corner": corner, "faces.start": np.ones((4, 3))}))
+    assert view["cells"].tolist() == corner.tolist() and view["velocity"].shape == (4, 3)
 
 
 def test_boxes_turn_and_spheres_have_their_radius():
@@ -68,15 +68,15 @@ def test_boxes_turn_and_spheres_have_their_radius():
         ]
     )  # fmt: skip
     bodies.step(1.0)
-    shown, units = look_at(bodies)
+    view, units = look_at(bodies)
     assert units == {"velocity": "m/s", "radius": "m"}
-    assert shown["radius"].tolist() == [*[0.0] * 8, 0.2]
-    box = shown["points"][:8]
+    assert view["radius"].tolist() == [*[0.0] * 8, 0.2]
+    box = view["points"][:8]
     assert np.ptp(box, axis=0) == pytest.approx([4.0, 2.0, 6.0])
-    assert shown["cells"].max() == 7 and shown["cells"].shape == (6, 4)
+    assert view["cells"].max() == 7 and view["cells"].shape == (6, 4)
     arm = box - [1.0, 0.0, 0.0]
-    assert shown["velocity"][:8] == pytest.approx(np.cross(quarter, arm))
-    for face in box[shown["cells"]]:  # seen from outside
+    assert view["velocity"][:8] == pytest.approx(np.cross(quarter, arm))
+    for face in box[view["cells"]]:  # seen from outside
         normal = np.cross(face[1] - face[0], face[2] - face[0])
         assert normal @ (face.mean(axis=0) - box.mean(axis=0)) > 0.0
 
@@ -90,8 +90,8 @@ def test_polygons_and_discs_are_one_face_and_one_circle():
             {"shape": "polygon", "corners": [[0, 0], [1, 0], [0, 1]], "origin": [7.0, 0.0, 0.0]},
         ]
     )  # fmt: skip
-    shown, _ = look_at(bodies)
-    assert shown["cells"].tolist() == [[0, 1, 2, 3, 4], [6, 7, 8, -1, -1]]
-    assert shown["radius"][5] == pytest.approx(0.2)
-    assert shown["points"][shown["cells"][0], 2].max() == 3.0
-    assert shown["points"][6:].tolist() == [[7.0, 0.0, 0.0], [8.0, 0.0, 0.0], [7.0, 0.0, 1.0]]
+    view, _ = look_at(bodies)
+    assert view["cells"].tolist() == [[0, 1, 2, 3, 4], [6, 7, 8, -1, -1]]
+    assert view["radius"][5] == pytest.approx(0.2)
+    assert view["points"][view["cells"][0], 2].max() == 3.0
+    assert view["points"][6:].tolist() == [[7.0, 0.0, 0.0], [8.0, 0.0, 0.0], [7.0, 0.0, 1.0]]

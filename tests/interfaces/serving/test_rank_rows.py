@@ -51,9 +51,9 @@ def test_a_rank_gets_its_rows_and_zeros_in_place_of_the_others():
     header, sent = with_rows(order("advance"), ROWS)
     assert sent["push.load"].shape == (2, 3)
     received = with_all_rows(Message(header, dict(sent)), ROWS)
-    whole, here = order("advance").fields["push.load"], ROWS["push"]
-    assert (received.fields["push.load"][here] == whole[here]).all()
-    assert not np.delete(received.fields["push.load"], here, axis=0).any()
+    loads, rows = order("advance").fields["push.load"], ROWS["push"]
+    assert (received.fields["push.load"][rows] == loads[rows]).all()
+    assert not np.delete(received.fields["push.load"], rows, axis=0).any()
     assert (received.fields["other.number"] == 1.0).all()
     assert received.header == {"order": "advance", "window": 3}
 

@@ -21,7 +21,7 @@ N = 4
 
 
 class Spring(Component):
-    """Pulled by what moves and what pushes; steps as `stable` says, one value a step."""
+    """Springs on moving feet, under loads; `stable` has the limit of each step."""
 
     takes = (MOVED, PUSHED)
     gives = (GIVEN, Port("motion", (POSITION,)))
@@ -57,7 +57,7 @@ class Spring(Component):
         del self.times[int(state["steps"][0]) :]
 
 
-def served(stable):
+def bound_server(stable):
     server = Server(Spring(stable), "spring")
     for order in ("describe", "bind"):
         server.handle(Message({"order": order}))
@@ -77,7 +77,7 @@ def advance(server, window, ends=("foot.position", "foot.velocity"), order="adva
     return server.handle(Message(header, fields(window)))
 
 
-# Fewest equal steps: 1, 7, 50; a ratio that is none; and a limit that changes as it goes.
+# Limits for 1, 7 and 50 equal steps; for no whole number of them; and one that changes.
 LIMITS = {
     "1": [math.inf],
     "7": [WINDOW / 7],
@@ -89,7 +89,7 @@ LIMITS = {
 
 @pytest.mark.parametrize("limits", LIMITS.values(), ids=LIMITS)
 def test_steps_fill_the_window_and_keep_to_the_limit(limits):
-    server = served(limits)
+    server = bound_server(limits)
     header, _ = advance(server, 0)
     times = server.component.times
     assert header["steps"] == len(times)
@@ -100,49 +100,49 @@ def test_steps_fill_the_window_and_keep_to_the_limit(limits):
 
 @pytest.mark.parametrize(("ratio", "steps"), [("1", 1), ("7", 7), ("50", 50), ("6.3", 7)])
 def test_a_window_falls_into_the_fewest_equal_steps(ratio, steps):
-    server = served(LIMITS[ratio])
+    server = bound_server(LIMITS[ratio])
     assert advance(server, 0)[0]["steps"] == steps
     assert np.ptp(server.component.times) < 1e-15
 
 
 @pytest.mark.parametrize("limits", LIMITS.values(), ids=LIMITS)
 def test_impulses_close_to_rounding_at_every_ratio(limits):
-    server = served(limits)
+    server = bound_server(limits)
     component = server.component
     for window in range(3):
-        before, pushed = component.v, len(component.times)
-        header, given = advance(server, window)
-        gained = component.v - before
-        sent = fields(window)["load.force"]
-        # What it gave away and what it was given make up all that its momentum changed by.
-        np.testing.assert_allclose(gained, sent - given["push.force"], rtol=0, atol=3e-16 * N)
-        assert header["steps"] == len(component.times) - pushed
-        scale = np.abs(sent).sum()
-        for told in (header["received"], header["applied"]):
-            assert np.abs(told["load.force"] - sent.sum(axis=0)).max() <= 4e-16 * scale
-        gap = header["sent"]["push.force"] - given["push.force"].sum(axis=0)
-        assert np.abs(gap).max() <= 4e-16 * np.abs(given["push.force"]).sum()
+        velocity, steps = component.v, len(component.times)
+        header, outputs = advance(server, window)
+        gained = component.v - velocity
+        load = fields(window)["load.force"]
+        # The change of its momentum is the received impulse less the impulse that it gave.
+        np.testing.assert_allclose(gained, load - outputs["push.force"], rtol=0, atol=3e-16 * N)
+        assert header["steps"] == len(component.times) - steps
+        scale = np.abs(load).sum()
+        for totals in (header["received"], header["applied"]):
+            assert np.abs(totals["load.force"] - load.sum(axis=0)).max() <= 4e-16 * scale
+        gap = header["sent"]["push.force"] - outputs["push.force"].sum(axis=0)
+        assert np.abs(gap).max() <= 4e-16 * np.abs(outputs["push.force"]).sum()
 
 
 @pytest.mark.parametrize("limits", LIMITS.values(), ids=LIMITS)
 def test_what_moves_a_component_moves_by_the_whole_displacement(limits):
-    server = served(limits)
+    server = bound_server(limits)
     advance(server, 0)
     server.component.taken.clear()
     server.component.times.clear()
     advance(server, 1)
     component = server.component
     steps = zip(component.taken, component.times, strict=True)
-    moved = sum(taken["foot.velocity"] * dt for taken, dt in steps)
+    moved = sum(inputs["foot.velocity"] * dt for inputs, dt in steps)
     displacement = fields(1)["foot.position"] - fields(0)["foot.position"]
     np.testing.assert_allclose(moved, displacement, rtol=0, atol=1e-15 * len(component.times))
 
 
 def test_inputs_that_do_not_change_are_taken_once():
-    server = served(LIMITS["50"])
-    sent = Message({"order": "advance", "window": 0, "dt": WINDOW, "ends": []})
-    sent.fields["load.force"] = np.ones((N, 3))
-    server.handle(sent)
+    server = bound_server(LIMITS["50"])
+    message = Message({"order": "advance", "window": 0, "dt": WINDOW, "ends": []})
+    message.fields["load.force"] = np.ones((N, 3))
+    server.handle(message)
     assert len(server.component.taken) == 1
 
 
@@ -151,7 +151,7 @@ def test_a_step_that_is_not_positive_is_refused(stable):
     with pytest.raises(StepError, match=f"stable_dt must be positive; it is {stable}"):
         divide(1.0, stable)
     with pytest.raises(StepError, match="must be positive"):
-        advance(served([stable]), 0)
+        advance(bound_server([stable]), 0)
 
 
 def test_a_step_that_never_ends_the_window_is_refused():
@@ -166,34 +166,34 @@ def test_no_limit_is_one_step():
 
 @pytest.mark.parametrize("limits", LIMITS.values(), ids=LIMITS)
 def test_a_window_repeated_after_a_rewind_gives_the_same_bits(limits):
-    server = served(limits)
+    server = bound_server(limits)
     advance(server, 0)
     server.handle(Message({"order": "keep"}))
     _, first = advance(server, 1)
     state = server.state()
     for _ in range(2):
         server.handle(Message({"order": "rewind"}))
-        _, again = advance(server, 1)
-        assert all(again[key].tobytes() == first[key].tobytes() for key in first)
+        _, repeated = advance(server, 1)
+        assert all(repeated[key].tobytes() == first[key].tobytes() for key in first)
         assert all(server.state()[key].tobytes() == state[key].tobytes() for key in state)
 
 
 def test_a_saved_state_goes_on_with_the_same_bits_in_another_server():
-    server, other = served(LIMITS["changing"]), served(LIMITS["changing"])
+    server, resumed = bound_server(LIMITS["changing"]), bound_server(LIMITS["changing"])
     for window in range(2):
         advance(server, window)
     _, state = server.handle(Message({"order": "save"}))
-    other.component.times = list(server.component.times)
-    other.handle(Message({"order": "load", "window": 2}, dict(state)))
-    one, two = advance(server, 2)[1], advance(other, 2)[1]
-    assert all(one[key].tobytes() == two[key].tobytes() for key in one)
+    resumed.component.times = list(server.component.times)
+    resumed.handle(Message({"order": "load", "window": 2}, dict(state)))
+    outputs, resumed_outputs = advance(server, 2)[1], advance(resumed, 2)[1]
+    assert all(outputs[key].tobytes() == resumed_outputs[key].tobytes() for key in outputs)
 
 
 def test_orders_out_of_turn_and_windows_that_are_no_numbers_are_refused():
     server = Server(Spring([1.0]), "spring")
     with pytest.raises(OrderError, match="when new, an order must be one of describe, finish"):
         advance(server, 0)
-    server = served([1.0])
+    server = bound_server([1.0])
     with pytest.raises(OrderError, match="window 0 is next; window 4 was ordered"):
         advance(server, 4)
     with pytest.raises(OrderError, match="window must be a whole number from 0; found 'one'"):
@@ -201,7 +201,7 @@ def test_orders_out_of_turn_and_windows_that_are_no_numbers_are_refused():
 
 
 def test_numbers_that_are_not_finite_are_refused_on_arrival():
-    server = served([1.0])
+    server = bound_server([1.0])
     message = Message({"order": "advance", "window": 0, "dt": WINDOW, "ends": []}, fields(0))
     message.fields["load.force"][2] = np.nan
     with pytest.raises(MessageError, match=r"window 0, received: .* load\.force .* item 2"):
@@ -209,22 +209,22 @@ def test_numbers_that_are_not_finite_are_refused_on_arrival():
 
 
 @pytest.mark.parametrize(
-    ("given", "words"),
+    ("outputs", "words"),
     [
         ({"push.force": np.zeros((N, 2))}, r"output push\.force must have shape \(n, \*\(3,\)\)"),
         ({"push.force": np.zeros((N, 3))}, r"motion\.position is missing"),
         ({"push.torque": np.zeros((N, 3))}, r"output push\.torque must have shape"),
     ],
 )
-def test_outputs_that_do_not_fit_their_ports_are_refused(given, words):
-    server = served([1.0])
-    server.component.give = lambda wanted: given
+def test_outputs_that_do_not_fit_their_ports_are_refused(outputs, words):
+    server = bound_server([1.0])
+    server.component.give = lambda wanted: outputs
     with pytest.raises(PortError, match=words):
         server.handle(Message({"order": "give"}))
 
 
 @pytest.mark.parametrize(
-    ("given", "words"),
+    ("outputs", "words"),
     [
         (None, r"give\(\) must return its fields by name; found NoneType"),
         ({"push.force": None}, r"output push\.force must be an array .* found NoneType"),
@@ -236,11 +236,11 @@ def test_outputs_that_do_not_fit_their_ports_are_refused(given, words):
     ],
 )
 @pytest.mark.parametrize("stable", [1.0, 0.4 * WINDOW])
-def test_a_field_that_changes_its_kind_or_shape_is_named(given, words, stable):
-    server = served([stable])
+def test_a_field_that_changes_its_kind_or_shape_is_named(outputs, words, stable):
+    server = bound_server([stable])
     server.handle(Message({"order": "give"}))
     plain = server.component.give
-    server.component.give = lambda wanted: given if given is None else plain(wanted) | given
+    server.component.give = lambda wanted: outputs if outputs is None else plain(wanted) | outputs
     with pytest.raises(PortError, match=words):
         server.advance(WINDOW)
 
@@ -266,14 +266,14 @@ def test_an_error_goes_back_over_the_line_with_its_traceback(capsys):
 
 
 def test_a_port_without_items_is_served():
-    server = served([WINDOW])
+    server = bound_server([WINDOW])
     server.component.give = lambda wanted: {
         "push.force": np.zeros((0, 3)),
         "motion.position": np.zeros((N, 3)),
     }
-    header, given = advance(server, 0)
+    header, outputs = advance(server, 0)
     assert header["sent"]["push.force"] == [0.0, 0.0, 0.0]
-    assert given["push.force"].shape == (0, 3)
+    assert outputs["push.force"].shape == (0, 3)
 
 
 def test_field_units_and_centrings_come_from_a_closed_list():
@@ -292,7 +292,7 @@ def test_fields_of_a_port_have_one_row_for_each_item_from_the_start():
 
 
 def test_warnings_that_are_no_texts_by_subject_are_refused(monkeypatch):
-    server = served([WINDOW])
+    server = bound_server([WINDOW])
     server.handle(Message({"order": "prime"}))
     monkeypatch.setattr(server.component, "final_warnings", lambda: None)
     with pytest.raises(PortError, match=r"final_warnings\(\) must return .* found NoneType"):
