@@ -78,15 +78,15 @@ def fitted(
 
 def require_same_bodies(saved: Saved, bodies: Bodies, solids: list[Solid]) -> None:
     """Refuse a state of other bodies: their number, sizes and contact spheres."""
-    there = len(saved["body"]) - 1
-    if there != len(bodies):
+    saved_count = len(saved["body"]) - 1
+    if saved_count != len(bodies):
         raise SceneError(
-            f"bodies must be as many as in the state that it begins from, {there}; found "
+            f"bodies must be as many as in the state that it begins from, {saved_count}; found "
             f"{len(bodies)}. Make both scenes alike."
         )
     kind = bodies.kind_of_each()
     radius = np.array([bounding_radius(body) for body in bodies.kinds])[kind]
-    before = saved["motion"][saved["row"][:there], RADIUS]
+    before = saved["motion"][saved["row"][:saved_count], RADIUS]
     if len(wrong := np.flatnonzero(np.abs(radius - before) > SAME * radius)):
         k = int(wrong[0])
         raise SceneError(
@@ -146,8 +146,8 @@ def renumber_planes(saved: Saved, number: Whole) -> None:
         row = np.repeat(np.arange(len(begin) - 1), np.diff(begin))
         on_plane = partner >= rows
         partner[on_plane] = rows + number[partner[on_plane] - rows]
-        there = np.flatnonzero(~on_plane | (partner >= rows))
-        order = there[np.lexsort((partner[there], row[there]))]
+        remaining = np.flatnonzero(~on_plane | (partner >= rows))
+        order = remaining[np.lexsort((partner[remaining], row[remaining]))]
         counts = np.bincount(row[order], minlength=len(begin) - 1)
         saved["balls.begin"] = np.concatenate([[0], np.cumsum(counts)])
         saved["balls.partner"] = partner[order]
@@ -159,11 +159,11 @@ def renumber_planes(saved: Saved, number: Whole) -> None:
     on_plane = key >> KIND == 0
     second = key & ((1 << FIRST) - 1)
     second[on_plane] = number[second[on_plane]]
-    there = np.flatnonzero(second >= 0)
-    key = (key >> FIRST << FIRST)[there] | second[there]
+    remaining = np.flatnonzero(second >= 0)
+    key = (key >> FIRST << FIRST)[remaining] | second[remaining]
     order = np.argsort(key, kind="stable")
     saved["others.key"] = key[order]
-    saved["others.history"] = np.ascontiguousarray(saved["others.history"][there][order])
+    saved["others.history"] = np.ascontiguousarray(saved["others.history"][remaining][order])
 
 
 def fit_lists(saved: Saved, lists: Lists) -> bool:

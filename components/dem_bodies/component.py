@@ -144,7 +144,7 @@ class DemBodies(Component):
         others, answers = self.lists.bodies, self.stepping.answers
         nothing: tuple[str, Array | None] = "", None
         text, place = diagnostics.failure(state, balls, others, time) if answers else nothing
-        raise StepError(self.stepping.said(text), place)
+        raise StepError(self.stepping.shared_text(text), place)
 
     def check(self) -> None:
         """Refuse a body whose rotation is not finite."""

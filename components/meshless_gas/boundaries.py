@@ -172,14 +172,14 @@ class Boundary:
 
     def __post_init__(self) -> None:
         names = ("state", "total", "pressure", "temperature", "velocity", "accommodation")
-        said = [key for key in names if getattr(self, key) is not None]
+        keys = [key for key in names if getattr(self, key) is not None]
         wrong = {
-            "inflow": said not in (["state"], ["total"]),
-            "outflow": bool(set(said) - {"pressure"}),
-            "isothermal": bool(set(said) - {"temperature", *NO_SLIP_KEYS}) or not self.temperature,
-            "adiabatic": bool(set(said) - NO_SLIP_KEYS),
+            "inflow": keys not in (["state"], ["total"]),
+            "outflow": bool(set(keys) - {"pressure"}),
+            "isothermal": bool(set(keys) - {"temperature", *NO_SLIP_KEYS}) or not self.temperature,
+            "adiabatic": bool(set(keys) - NO_SLIP_KEYS),
         }
-        if wrong.get(self.kind, bool(said)):
+        if wrong.get(self.kind, bool(keys)):
             need = {
                 "inflow": "state or total",
                 "outflow": "pressure or nothing",
@@ -188,7 +188,7 @@ class Boundary:
             }
             raise ValueError(
                 f"a boundary of kind {self.kind} takes {need.get(self.kind, 'nothing')}; found "
-                f"{' and '.join(said) or 'nothing'}. Correct it."
+                f"{' and '.join(keys) or 'nothing'}. Correct it."
             )
 
 

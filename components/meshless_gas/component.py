@@ -119,7 +119,7 @@ class MeshlessGas(Component):
             scheme.apply_boundaries()
         for part in self.parts:
             part.end(dt)
-            state.entered -= dt * part.given()
+            state.entered -= dt * part.loss_rates()
         state.time += dt
         scheme.update_stable_step(state.time)
         domain = self.motion.domain

@@ -161,16 +161,16 @@ def failure(place: Array, state: Array, time: float, share: float, sided: float)
         Sidedness of its neighbours.
     """
     where = np.array2string(place, precision=4)
-    said = (
+    cause = (
         f"density and pressure must stay above 0; the node at {where} m has {state[0]:.3g} kg/m3 "
         f"and {state[4]:.3g} Pa in the step from t = {time:.6g} s, of {share:.2f} of "
         "1/Σ(|v·c| + a|c|). "
     )
     if sided > UNEVEN:
-        return said + (
+        return cause + (
             f"Its neighbours lie mostly on one side (sidedness {sided:.2f}, at most {UNEVEN:g}). "
             "Leave neighbours out, or lower jitter."
         )
     if share > SAFE:
-        return said + f"Lower courant to {SAFE:g} or less."
-    return said + 'Refine the cloud there, say limiter = "minmod" or "van_albada", or order = 1.'
+        return cause + f"Lower courant to {SAFE:g} or less."
+    return cause + 'Refine the cloud there, say limiter = "minmod" or "van_albada", or order = 1.'

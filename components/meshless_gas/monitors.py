@@ -25,7 +25,7 @@ def blocked_inflows(
     params: MeshlessGasParams, state: State, domain: Domain, ranks: Ranks
 ) -> dict[str, str]:
     """Say where a shock would leave through a supersonic inflow, which keeps its state instead."""
-    said, answered = {}, ranks.answered(domain)
+    warnings, answered = {}, ranks.answered(domain)
     is_answered = (domain.edges >= answered.start) & (domain.edges < answered.stop)
     for number, (name, boundary) in enumerate(_patches(params), start=1):
         if boundary.state is None:
@@ -60,13 +60,13 @@ def blocked_inflows(
         if (strengths > OUTGOING).sum() > max(FEW, SHARE * supersonic.sum()):
             k = int(strengths.argmax())
             where = np.array2string(places[k], precision=4)
-            said[f"boundaries.{name}"] = (
+            warnings[f"boundaries.{name}"] = (
                 f"at {where} m gas comes in faster than sound at {pressure:.4g} Pa, and the gas "
                 f"beside it, at {beside[k, 2]:.4g} Pa, sends a shock out against it, which the "
                 "boundary does not let out. Move the boundary further away (a sphere: margin, "
                 "outer_radius)."
             )
-    return said
+    return warnings
 
 
 def _states_beside(primitive: Array, domain: Domain, place: NDArray[np.int64]) -> Array:

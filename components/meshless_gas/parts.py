@@ -58,7 +58,7 @@ class Part:
     def end(self, dt: float) -> None:
         """Finish a step of dt [s]."""
 
-    def given(self) -> Array:
+    def loss_rates(self) -> Array:
         """Mass, momentum and energy (5,) kg/s, N, W that the gas gave up in the last step."""
         return np.zeros(5)
 

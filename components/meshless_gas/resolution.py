@@ -17,20 +17,20 @@ OF_SHOCK = 6  # between a sphere and its bow shock
 
 def coarse_clouds(params: MeshlessGasParams, domain: Domain) -> dict[str, str]:
     """Say why results are wrong by 10 % and more, however long the run is."""
-    said = {}
+    warnings = {}
     if params.order == 1:
-        said["order"] = (
+        warnings["order"] = (
             "the scheme of first order was asked for: shocks and layers of friction are then wrong "
             "by 5 to 35 % on clouds on which the second order errs by 1 to 3 %. Leave order out."
         )
     steady = params.steady
     if steady is not None and (steady.change > CHANGE or steady.force > FORCE):
-        said["steady"] = (
+        warnings["steady"] = (
             f"a flow counts as settled that may still be far from it: change {steady.change:g} and "
             f"force {steady.force:g}; {CHANGE:g} and {FORCE:g} are known to serve. Lower them."
         )
     coarse = _coarse_box(params) if params.box is not None else _coarse_layers(params, domain)
-    return said | ({"resolution": coarse} if coarse else {})
+    return warnings | ({"resolution": coarse} if coarse else {})
 
 
 def _coarse_box(params: MeshlessGasParams) -> str:
@@ -53,9 +53,9 @@ def _coarse_box(params: MeshlessGasParams) -> str:
             )
             cases.append((gap, "nodes between its walls", count, max(ACROSS_GAP, wide)))
     return " ".join(
-        f"{name} has {count:.3g} {what}, at least {least:g} are needed for errors below 10 %. "
+        f"{name} has {count:.3g} {quantity}, at least {least:g} are needed for errors below 10 %. "
         "Lower box.spacing."
-        for name, what, count, least in cases
+        for name, quantity, count, least in cases
         if count < least - 0.5
     )
 

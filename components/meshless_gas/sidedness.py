@@ -210,18 +210,18 @@ def doubts_of(cloud: Cloud, stencil: Stencils, planar: bool, team: Team) -> tupl
 def notes_of(cure: Cure, count: int, nodes: int, planar: bool) -> tuple[str, ...]:
     """Say what was changed about the neighbours that a scene asks for."""
     most = cure.stencils.neighbours.shape[1]
-    said = []
+    notes = []
     if cure.completed:
-        said.append(
+        notes.append(
             f"neighbours: the {count} nearest of {cure.completed} of {nodes} nodes leave out "
             f"others that are as near, on one side; all these were added, up to {most} neighbours. "
             f"Leave neighbours out, or say {BLOCK[planar]}, to compute faster."
         )
     if cure.extended:
-        said.append(
+        notes.append(
             f"neighbours: the {count} nearest of {cure.extended} of {nodes} nodes lie mostly on "
             f"one side (sidedness up to {cure.worst:.2f}, at most {UNEVEN:g}); these nodes have "
             f"now the nearest that surround them, at most {most}. Leave neighbours out, or lower "
             "jitter."
         )
-    return tuple(said)
+    return tuple(notes)

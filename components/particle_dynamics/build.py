@@ -148,9 +148,9 @@ def _highest(
     if period is not None:
         arm -= period[:3] * np.rint(arm * period[3:])
     length = np.linalg.norm(arm, axis=1)
-    shells, which = np.unique(length.round(12), return_inverse=True)
-    along = np.array([stiffness(law, r) for r in shells.tolist()])[which]
-    across = np.array([pair_force(law, r) / r for r in shells.tolist()])[which]
+    shells, shell = np.unique(length.round(12), return_inverse=True)
+    along = np.array([stiffness(law, r) for r in shells.tolist()])[shell]
+    across = np.array([pair_force(law, r) / r for r in shells.tolist()])[shell]
     free = np.ones(len(start))
     free[frozen] = 0.0
     first = np.random.default_rng(0).normal(size=start.shape) * free[:, None]

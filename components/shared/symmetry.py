@@ -129,15 +129,15 @@ class SymmetryImages:
                 points = np.concatenate([points, mirrored(points, plane)])
         return points
 
-    def require_before(self, points: Array, what: str) -> None:
+    def require_before(self, points: Array, name: str) -> None:
         """Raise where points (n, 3) m are behind a plane."""
         for plane in self.planes:
             depth = plane.inward * (points[:, plane.axis] - plane.position)
             worst = int(np.argmin(depth))
             if depth[worst] < 0.0:
                 raise StepError(
-                    f"{what}s must stay before the plane of symmetry {plane.name}, "
-                    f"{plane.name[0]} = {plane.position:g} m; {what.split()[-1]} {worst} is at "
+                    f"{name}s must stay before the plane of symmetry {plane.name}, "
+                    f"{plane.name[0]} = {plane.position:g} m; {name.split()[-1]} {worst} is at "
                     f"{plane.name[0]} = {points[worst, plane.axis]:.4g} m. Move the body, cut it "
                     "there, or compute the whole."
                 )

@@ -41,12 +41,12 @@ def refuse_other_particles(
     saved: Fields, start: State, ranks: Ranks, spacing: float, keeps: bool
 ) -> None:
     """Refuse a state of another number of particles, or of particles that differ."""
-    count, there = ranks.particles(start), len(saved["identity"])
-    if there != count or not np.array_equal(np.sort(saved["identity"]), np.arange(count)):
+    count, saved_count = ranks.particles(start), len(saved["identity"])
+    if saved_count != count or not np.array_equal(np.sort(saved["identity"]), np.arange(count)):
         raise SceneError(
-            f"bodies must have as many particles as in the state that it begins from, {there}; "
-            f"found {count}. Make spacing and bodies as they were in that run, or leave it out of "
-            "begin_from.components."
+            "bodies must have as many particles as in the state that it begins from, "
+            f"{saved_count}; found {count}. Make spacing and bodies as they were in that run, or "
+            "leave it out of begin_from.components."
         )
     row = np.argsort(saved["identity"])[start.identity]
     differ = {name: saved[name][row] != getattr(start, name) for name in OF_EACH}

@@ -82,9 +82,9 @@ def viscosity_warning(params: SphSolidParams) -> str:
 
 def viscosity_note(params: SphSolidParams) -> str:
     """Better settings for a slow impact of a material that flows; empty if these are good."""
-    said = params.viscosity_linear is not None or is_fast(params)
+    is_chosen = params.viscosity_linear is not None or is_fast(params)
     flows = all(material(body.material).johnson_cook for body in params.bodies)
-    if said or not flows or method(params).linear < SHOCKS[0] or not _impact(params):
+    if is_chosen or not flows or method(params).linear < SHOCKS[0] or not _impact(params):
         return ""
     return (
         "bodies meet below a tenth of the speed of sound. The viscosities 1 and 2, taken for their "

@@ -46,13 +46,13 @@ class RemoteHost:
         self.silent, now = silent, time.monotonic()
         if silent and not self._told_since:
             self._told_since = now - silent
-            return f"{self.said()}; the run waits up to {patience:g} s more for it"
+            return f"{self.silence_text()}; the run waits up to {patience:g} s more for it"
         if self._told_since and not silent:
             lasted, self._told_since = now - self._told_since, 0.0
             return f"{self.name} gives signs of life again, after {lasted:.0f} s"
         return ""
 
-    def said(self) -> str:
+    def silence_text(self) -> str:
         """How long the host is silent, in words."""
         return f"no sign of life from {self.name} for {self.silent:.0f} s"
 

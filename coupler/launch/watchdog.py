@@ -260,7 +260,7 @@ class Watchdog:
             say(f"{component.participant.name}: {news}")
             component.begin(component.since)  # when the host is back, its patience begins again
         if host.silent > host.noticed_within + component.patience:
-            self.fail(component, f"host {host.name} does not answer: {host.said()}")
+            self.fail(component, f"host {host.name} does not answer: {host.silence_text()}")
         return host.silent > 0.0
 
     def check_wait(self, component: Watched, passed: float) -> None:

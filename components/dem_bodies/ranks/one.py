@@ -86,8 +86,8 @@ class OneRank:
         """Pairs of balls of all rows."""
         return self.lists.balls
 
-    def said(self, text: str) -> str:
-        """What is said where the rows of all are known."""
+    def shared_text(self, text: str) -> str:
+        """Text of an error, the same on all ranks."""
         return text
 
     def load(self, saved: Fields) -> None:

@@ -175,8 +175,8 @@ class SeveralRanks(OneRank):
         """Pairs of balls of all rows."""
         return self.lists.pairs_of_all()
 
-    def said(self, text: str) -> str:
-        """What rank 0 says."""
+    def shared_text(self, text: str) -> str:
+        """Text of rank 0, on all ranks."""
         letters = np.array([ord(letter) for letter in text if self.answers], np.int64)
         return "".join(map(chr, np.concatenate(share(self.shares.communicator, letters))))
 

@@ -145,7 +145,7 @@ def moved_in(points: Array, foot: Array, depth: Array, shape: Solid, radius: flo
         points = foot[sound] + radius * inward
         foot, away = distances(points, shape)
         depth = signed(points, away, shape)
-        there = np.abs(depth - radius) <= CLOSE * radius
-        placed.append(points[there])
-        points, foot, depth = points[~there], foot[~there], depth[~there]
+        arrived = np.abs(depth - radius) <= CLOSE * radius
+        placed.append(points[arrived])
+        points, foot, depth = points[~arrived], foot[~arrived], depth[~arrived]
     return np.concatenate(placed)

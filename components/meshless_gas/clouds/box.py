@@ -161,11 +161,11 @@ def _faces(
         if not lattices[d].has_ends[side]:
             continue
         face = AXES[d] + "-+"[side]
-        sign, there = (1.0, -1.0)[side], KINDS[faces[face]]
+        sign, face_kind = (1.0, -1.0)[side], KINDS[faces[face]]
         on = place[:, d] == (0, len(lattices[d].places) - 1)[side]
         areas[on, d] += sign * widths[on].prod(axis=1) / widths[on, d]
-        first = on & (ranks[kind] < ranks[there])
-        kind[first], patch[first], normals[first] = there, patches[face], 0.0
+        first = on & (ranks[kind] < ranks[face_kind])
+        kind[first], patch[first], normals[first] = face_kind, patches[face], 0.0
         normals[first, d] = sign
     return kind, patch, normals, areas
 

@@ -122,11 +122,11 @@ def _halved(cells: Cells, chosen: Flags, axes: tuple[int, ...]) -> Cells:
     """Replace some cells by their halves along each axis; rows stay in order."""
     children = np.where(chosen, 2 ** len(axes), 1)
     rows = np.repeat(np.arange(len(chosen)), children)
-    which = np.arange(len(rows)) - np.repeat(np.cumsum(children) - children, children)
+    child = np.arange(len(rows)) - np.repeat(np.cumsum(children) - children, children)
     positions, widths = cells.positions[rows], cells.widths[rows]
     split = chosen[rows]
     for bit, d in enumerate(axes):
-        side = ((which >> bit) & 1) - 0.5
+        side = ((child >> bit) & 1) - 0.5
         widths[split, d] *= 0.5
         positions[split, d] += (side * widths[:, d])[split]
     return Cells(cells.origin[rows], positions, widths, cells.level[rows] + split)

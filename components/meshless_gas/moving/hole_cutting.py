@@ -101,6 +101,6 @@ def without_holes(domain: Domain, holes: Holes, outflows: Outflows) -> Domain:
         cloud.areas[: cloud.nodes] = np.where(active[:, None], layout.areas, 0.0)
         if layout.planar:
             wall = layout.radii[layout.is_cut].max()
-            there = layout.plane[active[layout.plane]]
-            write_plane_areas(there, cloud.positions, wall, cloud.areas)
+            nodes = layout.plane[active[layout.plane]]
+            write_plane_areas(nodes, cloud.positions, wall, cloud.areas)
     return domain

@@ -185,24 +185,27 @@ def refuse_partner(static: Fields, radii: Array, bodies: NDArray[np.int64]) -> N
         )
 
 
-def refuse_elsewhere(told: Array, centre: Array, radii: Array, bodies: NDArray[np.int64]) -> None:
+def refuse_elsewhere(
+    partner_centre: Array, centre: Array, radii: Array, bodies: NDArray[np.int64]
+) -> None:
     """Refuse partners whose bodies begin at other places than those of the gas.
 
     Parameters
     ----------
-    told, centre : (d, 3) m
+    partner_centre, centre : (d, 3) m
         Of driven bodies, by the partner and by the gas.
     radii : (d,) m
     bodies : (d,) int array
         Numbers of the driven bodies.
     """
-    apart = np.sqrt(((told - centre) ** 2).sum(axis=1))
+    apart = np.sqrt(((partner_centre - centre) ** 2).sum(axis=1))
     wrong = np.flatnonzero(apart > ROUNDING * (radii + np.abs(centre).max(axis=1)))
     if len(wrong):
         k = wrong[0]
         raise SceneError(
             f"moving.bodies.{bodies[k]}: the partner's body must begin where the gas has it, at "
-            f"{centre[k].tolist()} m; found {told[k].tolist()} m. Give both the same centre."
+            f"{centre[k].tolist()} m; found {partner_centre[k].tolist()} m. Give both the same "
+            "centre."
         )
 
 

@@ -139,8 +139,8 @@ def _home(layers: int, count: int, images: NDArray[np.int64], is_cut: bool) -> W
             if images.max(initial=-1) >= 0:  # beyond the axis lies the image of the node itself
                 itself = level * count + ray
                 row = np.where(over, images[np.clip(itself, 0, len(images) - 1)], row)
-            there = (level >= 0) & (level < layers)
+            exists = (level >= 0) & (level < layers)
             if is_cut:  # beyond the last ray lies nothing
-                there &= beside < count
-            columns.append(np.where(there, row, layer * count + ray))
+                exists &= beside < count
+            columns.append(np.where(exists, row, layer * count + ray))
     return np.stack(columns, axis=1).astype(np.int32)

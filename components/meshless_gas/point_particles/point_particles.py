@@ -139,7 +139,7 @@ class CoupledParticles(Part):
         """Exchange momentum and heat in a stage of a step [s]."""
         self.exchange.add(work.primitive, work.residual, dt, stage)
 
-    def given(self) -> Array:
+    def loss_rates(self) -> Array:
         """Mass, momentum and energy (5,) kg/s, N, W that the gas gave up in the last step."""
         if not self.exchange.reaction:
             return np.zeros(5)

@@ -65,8 +65,8 @@ class DividedNodes(SeveralRanks):
         owner = np.searchsorted(begins, wanted, side="right") - 1
         ranks = range(self._communicator.size)
         others = [wanted[(owner == rank) & (rank != self._communicator.rank)] for rank in ranks]
-        asked = send_rows(self._communicator, others)
-        sent = [local[rows].astype(np.int64) for rows in asked]
+        requested = send_rows(self._communicator, others)
+        sent = [local[rows].astype(np.int64) for rows in requested]
         received = [local[rows].astype(np.int64) for rows in others]
         return Halo(self._communicator, sent, received, (5,))
 

@@ -69,8 +69,8 @@ class CopiesAndImages:
         all_near, all_sent = [], []
         start = 0
         for number, group in enumerate(groups):
-            which = slice(6 * number, 6 * number + 6)
-            near = [_within(group.points, box[which], WIDER * reach) for box in all_boxes]
+            columns = slice(6 * number, 6 * number + 6)
+            near = [_within(group.points, box[columns], WIDER * reach) for box in all_boxes]
             near[self._communicator.rank] = np.zeros(0, np.int64)
             # Keys travel as the bits of numbers.
             numbers = np.column_stack([group.points, group.keys.view(np.float64)])

@@ -121,8 +121,8 @@ def open_edges(mesh: object) -> int:
     """Count the edges that are not passed once in either direction."""
     edges = np.asarray(getattr(mesh, "edges", np.zeros((0, 2))), np.int64)
     count = int(edges.max(initial=0)) + 1
-    there, back = edges[:, 0] * count + edges[:, 1], edges[:, 1] * count + edges[:, 0]
-    return int((~np.isin(there, back)).sum())
+    forward, backward = edges[:, 0] * count + edges[:, 1], edges[:, 1] * count + edges[:, 0]
+    return int((~np.isin(forward, backward)).sum())
 
 
 def voxels(path: Path, width: float) -> Solid:

@@ -68,11 +68,11 @@ def rigid_answer(port: str, request: Fields, bodies: Sequence[Sampler]) -> dict[
     bodies : sequence of functions
         Of each body one such as `sphere` or `box` with its dimensions bound.
     """
-    asked, parts = sampling_of(port, request), []
+    sampling, parts = sampling_of(port, request), []
     known: dict[Sampler, BodySamples] = {}  # equal bodies share one function
     for number, body in enumerate(bodies):
         if body not in known:
-            known[body] = _sampled(number, body, asked)
+            known[body] = _sampled(number, body, sampling)
         parts.append(known[body])
     count = [len(part.arm) for part in parts]
     answer = {
@@ -81,17 +81,17 @@ def rigid_answer(port: str, request: Fields, bodies: Sequence[Sampler]) -> dict[
         "volume": np.concatenate([part.volume for part in parts]),
         "body": np.repeat(np.arange(len(parts)), count).astype(np.float64),
     }
-    if asked.mirrored:
+    if sampling.mirrored:
         answer["image"] = np.concatenate([part.image for part in parts])
     return {f"{port}.{name}": array for name, array in answer.items()}
 
 
-def _sampled(number: int, body: Sampler, asked: Sampling) -> BodySamples:
+def _sampled(number: int, body: Sampler, sampling: Sampling) -> BodySamples:
     try:
-        return body(asked)
+        return body(sampling)
     except ThinError as error:
         raise SceneError(
-            f"a body must be at least {asked.least:g} m across to be sampled: a spacing of its "
+            f"a body must be at least {sampling.least:g} m across to be sampled: a spacing of its "
             "partner, and twice the depth of the outermost samples that it asks for; body "
             f"{number} is {error} m. Refine the partner's spacing, or leave the body out."
         ) from error
@@ -101,9 +101,9 @@ class ThinError(ValueError):
     """A body is thinner than its partner can sample: how thick it is."""
 
 
-def require_width(width: float, asked: Sampling) -> None:
+def require_width(width: float, sampling: Sampling) -> None:
     """Refuse a body of a width [m] that is less than samples need."""
-    if width < asked.least:
+    if width < sampling.least:
         raise ThinError(f"{width:g}")
 
 
@@ -119,72 +119,80 @@ def sampler_of(shape: Shape) -> Sampler:
     return partial(disc if isinstance(shape, Disc) else sphere, 2.0 * shape.radius)
 
 
-def sphere(diameter: float, asked: Sampling) -> BodySamples:
+def sphere(diameter: float, sampling: Sampling) -> BodySamples:
     """Sample a sphere."""
-    _require_space(asked)
-    require_width(diameter, asked)
-    arm, normal, volume = solid.fill_sphere(diameter, asked.spacing, asked.depth, asked.inset)
+    _require_space(sampling)
+    require_width(diameter, sampling)
+    arm, normal, volume = solid.fill_sphere(
+        diameter, sampling.spacing, sampling.depth, sampling.inset
+    )
     return BodySamples(arm, normal, volume, solid.sphere_images(diameter, arm, normal))
 
 
-def box(size: Sequence[float], asked: Sampling) -> BodySamples:
+def box(size: Sequence[float], sampling: Sampling) -> BodySamples:
     """Sample a box with edges (3,) m."""
-    _require_space(asked)
+    _require_space(sampling)
     edges = np.array(size)
-    require_width(float(edges.min()), asked)
-    arm, normal, volume = solid.fill_box(edges, asked.spacing, asked.depth, asked.inset)
+    require_width(float(edges.min()), sampling)
+    arm, normal, volume = solid.fill_box(edges, sampling.spacing, sampling.depth, sampling.inset)
     return BodySamples(arm, normal, volume, solid.box_images(edges, arm, normal))
 
 
-def spheres(centres: Array, radii: Array, volume: float, asked: Sampling) -> BodySamples:
+def spheres(centres: Array, radii: Array, volume: float, sampling: Sampling) -> BodySamples:
     """Sample a union of spheres (k, 3) m, (k,) m about its centre of mass, of a volume [m3]."""
-    _require_space(asked)
-    require_width(2.0 * float(radii.max()), asked)
+    _require_space(sampling)
+    require_width(2.0 * float(radii.max()), sampling)
     low, high = (centres - radii[:, None]).min(axis=0), (centres + radii[:, None]).max(axis=0)
-    return _closed(closed.Body(closed.depths_in_spheres(centres, radii), low, high, volume), asked)
+    return _closed(
+        closed.Body(closed.depths_in_spheres(centres, radii), low, high, volume), sampling
+    )
 
 
-def mesh(triangles: Array, volume: float, asked: Sampling) -> BodySamples:
+def mesh(triangles: Array, volume: float, sampling: Sampling) -> BodySamples:
     """Sample a closed surface of triangles (t, 3, 3) m about its centre of mass [m3]."""
-    _require_space(asked)
+    _require_space(sampling)
     low, high = triangles.min(axis=(0, 1)), triangles.max(axis=(0, 1))
-    require_width(float((high - low).min()), asked)
-    return _closed(closed.Body(closed.depths_in_mesh(triangles), low, high, volume), asked)
+    require_width(float((high - low).min()), sampling)
+    return _closed(closed.Body(closed.depths_in_mesh(triangles), low, high, volume), sampling)
 
 
-def _closed(body: closed.Body, asked: Sampling) -> BodySamples:
-    less = asked.inset - 0.5 * asked.spacing
-    samples, deepest = closed.fill_closed(body, asked.spacing, asked.depth, less)
+def _closed(body: closed.Body, sampling: Sampling) -> BodySamples:
+    less = sampling.inset - 0.5 * sampling.spacing
+    samples, deepest = closed.fill_closed(body, sampling.spacing, sampling.depth, less)
     # The deepest place of the lattice may miss the middle by half a cell.
-    require_width(2.0 * deepest + asked.spacing, asked)
+    require_width(2.0 * deepest + sampling.spacing, sampling)
     return BodySamples(*samples)
 
 
-def disc(diameter: float, asked: Sampling) -> BodySamples:
+def disc(diameter: float, sampling: Sampling) -> BodySamples:
     """Sample a disc of two dimensions."""
-    _require_plane(asked)
-    require_width(diameter, asked)
-    arm, normal, volume = plane.fill_disc(diameter, asked.spacing, asked.depth, asked.inset)
+    _require_plane(sampling)
+    require_width(diameter, sampling)
+    arm, normal, volume = plane.fill_disc(
+        diameter, sampling.spacing, sampling.depth, sampling.inset
+    )
     return BodySamples(arm, normal, volume, solid.sphere_images(diameter, arm, normal))
 
 
-def polygon(corner: Array, asked: Sampling) -> BodySamples:
+def polygon(corner: Array, sampling: Sampling) -> BodySamples:
     """Sample a polygon with corners (k, 2) m about its centre, from x to z."""
-    _require_plane(asked)
+    _require_plane(sampling)
     if not is_convex(corner):
-        return _closed(plane.closed_polygon(corner), asked)
-    require_width(2.0 * plane.inradius(corner), asked)
-    arm, normal, volume = plane.fill_polygon(corner, asked.spacing, asked.depth, asked.inset)
+        return _closed(plane.closed_polygon(corner), sampling)
+    require_width(2.0 * plane.inradius(corner), sampling)
+    arm, normal, volume = plane.fill_polygon(
+        corner, sampling.spacing, sampling.depth, sampling.inset
+    )
     return BodySamples(arm, normal, volume, plane.polygon_images(corner, arm, normal))
 
 
-def _require_space(asked: Sampling) -> None:
-    if asked.planar:
+def _require_space(sampling: Sampling) -> None:
+    if sampling.planar:
         raise SceneError(DIMENSIONS.format("three", "two", "disc or polygon"))
 
 
-def _require_plane(asked: Sampling) -> None:
-    if not asked.planar:
+def _require_plane(sampling: Sampling) -> None:
+    if not sampling.planar:
         raise SceneError(DIMENSIONS.format("two", "three", "sphere, box or mesh"))
 
 

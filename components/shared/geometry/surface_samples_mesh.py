@@ -43,17 +43,17 @@ def mesh_answer(port: str, request: Fields, static: Fields) -> dict[str, Array]:
         return {
             f"{port}.{name}": np.asarray(getattr(projection, name), float) for name in PROJECTED
         }
-    asked = sampling_of(port, request)
-    if asked.planar != (static.get(f"{port}.dimensions", [3.0])[0] == 2.0):
+    sampling = sampling_of(port, request)
+    if sampling.planar != (static.get(f"{port}.dimensions", [3.0])[0] == 2.0):
         raise SceneError(
             "a mesh and its partner must have two dimensions or both three. Set dimensions = 2 in "
             "both, or 3 in both."
         )
-    samples = sample_faces(position, face, asked)
-    if samples.room < asked.least * (1.0 - ROUNDING):
+    samples = sample_faces(position, face, sampling)
+    if samples.room < sampling.least * (1.0 - ROUNDING):
         raise SceneError(
-            f"a body must be at least {asked.least:g} m thick between its faces to be sampled: a "
-            "spacing of its partner, and twice the depth of the outermost samples that it asks "
+            f"a body must be at least {sampling.least:g} m thick between its faces to be sampled: "
+            "a spacing of its partner, and twice the depth of the outermost samples that it asks "
             f"for; behind face {samples.thin} it is {samples.room:g} m. Refine the partner's "
             "spacing, or leave one of its sides out of its coupled faces."
         )
@@ -96,7 +96,7 @@ class Columns:
         return at_points(weight, corner), np.cross(along, across + self.side)
 
 
-def sample_faces(position: Array, face: Array, asked: Sampling) -> FaceSamples:
+def sample_faces(position: Array, face: Array, sampling: Sampling) -> FaceSamples:
     """Sample the body below the faces (m, 4) of a mesh with its nodes at (nodes, 3) m.
 
     Each face is cut into cells of about the spacing, with a column of samples below the middle of
@@ -104,18 +104,18 @@ def sample_faces(position: Array, face: Array, asked: Sampling) -> FaceSamples:
     middle between them; a sample that lies deeper below its own face than below another is left
     to that one, as at the edges of a body.
     """
-    columns = _columns(position, face, asked)
+    columns = _columns(position, face, sampling)
     start, across = columns.places(position)
     length = np.linalg.norm(across, axis=1)
     normal = across / length[:, None]
     outward = _face_normals(position, face, columns.side)
     x = np.ascontiguousarray(position[corners(face)])
-    room = _room(start, normal, columns.face, outward, x, asked)
-    layers, thickness = _layers(room, asked)
+    room = _room(start, normal, columns.face, outward, x, sampling)
+    layers, thickness = _layers(room, sampling)
     rows = np.repeat(np.arange(len(start)), layers)
     number = np.arange(len(rows)) - np.repeat(np.cumsum(layers) - layers, layers)
     thick = thickness[rows]
-    depth = np.maximum(_shift(asked) + (number + 0.5) * thick, 0.0)
+    depth = np.maximum(_shift(sampling) + (number + 0.5) * thick, 0.0)
     place = start[rows] - depth[:, None] * normal[rows]
     below = _own(place, normal[rows], columns.face[rows], depth, thick, outward, x)
     volume = (columns.share * length)[rows] * thick
@@ -134,7 +134,7 @@ def sample_faces(position: Array, face: Array, asked: Sampling) -> FaceSamples:
     )
 
 
-def _columns(position: Array, face: Array, asked: Sampling) -> Columns:
+def _columns(position: Array, face: Array, sampling: Sampling) -> Columns:
     # Kernels, and numba with them, are left out of reading scenes, and of those without meshes.
     from quintet.components.shared.geometry.face_kernels import write_columns
 
@@ -142,13 +142,13 @@ def _columns(position: Array, face: Array, asked: Sampling) -> Columns:
     x = position[corner]
     edge = np.linalg.norm(x - np.roll(x, -1, axis=1), axis=2)  # (m, 4) m: ab, bc, cd, da
     sides = np.stack([edge[:, [0, 2]].max(axis=1), edge[:, [1, 3]].max(axis=1)], axis=1)
-    count = np.maximum(np.rint(sides / asked.spacing).astype(np.int64), 1)
-    if asked.planar:
+    count = np.maximum(np.rint(sides / sampling.spacing).astype(np.int64), 1)
+    if sampling.planar:
         count[:, 1] = 1
     total = int(count.prod(axis=1).sum())
     owner, local, share = np.zeros(total, np.int64), np.zeros((total, 2)), np.zeros(total)
     write_columns(count, owner, local, share)
-    side = PLANAR_SIDE if asked.planar else np.zeros(3)
+    side = PLANAR_SIDE if sampling.planar else np.zeros(3)
     return Columns(corner[owner], owner, local, share, side)
 
 
@@ -161,29 +161,29 @@ def _face_normals(position: Array, face: Array, side: Array) -> Array:
 
 
 def _room(
-    start: Array, normal: Array, face: Array, outward: Array, x: Array, asked: Sampling
+    start: Array, normal: Array, face: Array, outward: Array, x: Array, sampling: Sampling
 ) -> Array:
     """How far (n,) m it is from columns to where the body ends behind them; ∞ if that is far."""
     # Late as in `_columns`.
     from quintet.components.shared.geometry.face_kernels import opposite_faces
 
-    room, reach = np.full(len(start), np.inf), 2.0 * (asked.inset + asked.depth)
+    room, reach = np.full(len(start), np.inf), 2.0 * (sampling.inset + sampling.depth)
     opposite_faces(start, -normal, face, reach, cells_of(x), outward, room)
     return room
 
 
-def _shift(asked: Sampling) -> float:
+def _shift(sampling: Sampling) -> float:
     """How far [m] below a face the first layer of one spacing begins."""
-    return asked.inset - 0.5 * asked.spacing
+    return sampling.inset - 0.5 * sampling.spacing
 
 
-def _layers(room: Array, asked: Sampling) -> tuple[Array, Array]:
+def _layers(room: Array, sampling: Sampling) -> tuple[Array, Array]:
     """Number (n,) of the samples in columns, and the thickness (n,) m that each stands for."""
-    most = max(1, int(np.ceil(asked.depth / asked.spacing - 0.5 - ROUNDING)))
-    half = 0.5 * room - _shift(asked)
-    deep = half > (1.0 - ROUNDING) * most * asked.spacing
-    half = np.where(deep, most * asked.spacing, half)
-    layers = np.clip(np.rint(half / asked.spacing).astype(np.int64), 1, most)
+    most = max(1, int(np.ceil(sampling.depth / sampling.spacing - 0.5 - ROUNDING)))
+    half = 0.5 * room - _shift(sampling)
+    deep = half > (1.0 - ROUNDING) * most * sampling.spacing
+    half = np.where(deep, most * sampling.spacing, half)
+    layers = np.clip(np.rint(half / sampling.spacing).astype(np.int64), 1, most)
     return layers, half / layers
 
 
