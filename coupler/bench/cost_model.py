@@ -282,11 +282,11 @@ def of_run(
     ValueError
         If messages alone would have taken longer than the measured step.
     """
-    there = of_model(model, network, items, measured)
-    rest = step - (there.total - there.compute)
+    measured_cost = of_model(model, network, items, measured)
+    rest = step - (measured_cost.total - measured_cost.compute)
     if rest <= 0.0:
         raise ValueError(
             f"a step must take longer than its messages, {1e3 * (step - rest):.3g} ms by the model"
         )
-    here = of_model(model, network, items, ranks)
-    return here._replace(compute=here.compute * rest / there.compute)
+    cost = of_model(model, network, items, ranks)
+    return cost._replace(compute=cost.compute * rest / measured_cost.compute)

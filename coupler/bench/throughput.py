@@ -27,7 +27,7 @@ from quintet.interfaces.errors import QuintetError, SceneError
 from quintet.interfaces.manifest import BenchCase, find, look_in, unknown_kind
 from quintet.interfaces.params import unknown
 
-Found = dict[str, Any]
+Row = dict[str, Any]
 
 
 def run_kind(options: argparse.Namespace) -> int:
@@ -43,8 +43,8 @@ def run_kind(options: argparse.Namespace) -> int:
     network = network_here() if max(ranks) > 1 else None
     for number, case in cases:
         for several, count in product(ranks, threads):
-            said = f"ranks: {several}, " if options.ranks else ""
-            print(f"{case.name}, {said}threads: {count} ... ", end="", flush=True)
+            prefix = f"ranks: {several}, " if options.ranks else ""
+            print(f"{case.name}, {prefix}threads: {count} ... ", end="", flush=True)
             rates.append(run_case(options.name, number, count, several))
             rates[-1]["network"] = network
             print(f"{rates[-1]['rate']:.3g} {rates[-1]['unit']} a thread", flush=True)
@@ -69,7 +69,7 @@ def wants_model(options: argparse.Namespace, ranks: Sequence[int], series: Colle
     return enough
 
 
-def network_here() -> Found:
+def network_here() -> Row:
     """Latency, bandwidth and cores of this host."""
     # Start-up: only a component of several ranks needs it.
     from quintet.coupler.bench.ping_pong import measure_network
@@ -110,7 +110,7 @@ def usual_threads() -> Sequence[int]:
     return (1, 2) if len(os.sched_getaffinity(0)) > 1 else (1,)
 
 
-def run_case(kind: str, number: int, threads: int, ranks: int = 1) -> Found:
+def run_case(kind: str, number: int, threads: int, ranks: int = 1) -> Row:
     """Measure a case in child processes, with memory and compiled kernels of their own."""
     with tempfile.TemporaryDirectory() as folder:
         log, file = Path(folder) / "log", Path(folder) / "found.json"
@@ -134,7 +134,7 @@ def run_case(kind: str, number: int, threads: int, ranks: int = 1) -> Found:
         return dict(json.loads(file.read_text()))
 
 
-def table(rates: Sequence[Found]) -> Table:
+def table(rates: Sequence[Row]) -> Table:
     """One row for each case and number of ranks and threads; ranks if any case has several."""
     screen_table = Table(box=None, pad_edge=False)
     several = any(row["ranks"] > 1 for row in rates)

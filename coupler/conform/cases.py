@@ -66,15 +66,17 @@ def of_file(path: Path) -> ConformCase:
     except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
         raise SceneError(f"{path}: parameters must be valid TOML: {error}.") from error
     table.pop("kind", None)  # as in a scene
-    said = table.pop(OWN_TABLE, {})
+    settings = table.pop(OWN_TABLE, {})
     fields = {field.name: field for field in dataclasses.fields(ConformCase)}
     known = fields.keys() - {"name", "params"}
-    if not isinstance(said, dict):
-        raise SceneError(f"{path}: {OWN_TABLE} must be a table; found {said!r}.")
-    wrong = [unknown(f"{path}: {OWN_TABLE}.{key}", key, known) for key in said.keys() - known]
+    if not isinstance(settings, dict):
+        raise SceneError(f"{path}: {OWN_TABLE} must be a table; found {settings!r}.")
+    wrong = [unknown(f"{path}: {OWN_TABLE}.{key}", key, known) for key in settings.keys() - known]
     if wrong:
         raise SceneError(wrong)
-    values = {key: _read(f"{path}: {OWN_TABLE}.{key}", key, value) for key, value in said.items()}
+    values = {
+        key: _read(f"{path}: {OWN_TABLE}.{key}", key, value) for key, value in settings.items()
+    }
     return ConformCase(path.name, table, **values)
 
 

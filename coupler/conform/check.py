@@ -29,18 +29,18 @@ def try_law(law: Law, trial: Trial) -> Finding:
     """Try one law; what the component raises breaks it."""
     began = time.perf_counter()
     status: Status = "passed"
-    said = ""
+    text = ""
     try:
         law(trial)
     except DoesNotApply as reason:
-        status, said = "does not apply", str(reason)
+        status, text = "does not apply", str(reason)
     except LawBroken as broken:
-        status, said = "failed", str(broken)
+        status, text = "failed", str(broken)
     except SceneError:
         raise  # the case is wrong, not the component
     except Exception as error:  # of any kind: what it does here is its author's
-        status, said = "failed", _place(error)
-    return Finding(name_of(law), status, said, time.perf_counter() - began)
+        status, text = "failed", _place(error)
+    return Finding(name_of(law), status, text, time.perf_counter() - began)
 
 
 def _place(error: Exception) -> str:

@@ -80,9 +80,9 @@ def report(trial: Trial) -> list[Finding]:
 
 def line(finding: Finding) -> str:
     """One finding."""
-    took = f" ({finding.seconds:.1f} s)" if finding.seconds >= SLOW else ""
-    said = f": {finding.said}" if finding.said else ""
-    return f"  {finding.status:<16}{finding.law}{said}{took}"
+    duration = f" ({finding.seconds:.1f} s)" if finding.seconds >= SLOW else ""
+    reason = f": {finding.said}" if finding.said else ""
+    return f"  {finding.status:<16}{finding.law}{reason}{duration}"
 
 
 def summary(counts: dict[str, int]) -> str:

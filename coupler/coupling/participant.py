@@ -144,8 +144,8 @@ class Participant:
             failed = message.order == "failed"
             if self.trial and message.order == "unable":
                 self._answered = True
-                said = f"{message.header.get('error')}: {message.header.get('text')}"
-                raise TrialFailed(f"{self.name}: {sendable(said)}")
+                cause = f"{message.header.get('error')}: {message.header.get('text')}"
+                raise TrialFailed(f"{self.name}: {sendable(cause)}")
             if not failed:
                 check_answer(self.order, message)
                 if self.sums and self.order == "advance":
@@ -167,9 +167,9 @@ class Participant:
             if message.header.get("error") == SceneError.__name__ and self.order in BEFORE:
                 # It has not begun: the scene is refused, by who knows the rule.
                 raise SceneError(f"components.{self.name}: {text}")
-            said = f"{sendable(str(message.header.get('error')))}: {text}"
+            cause = f"{sendable(str(message.header.get('error')))}: {text}"
             trace = sendable(str(message.header.get("traceback", "")))
-            failure = ComponentFailed(self.name, self.window, said, trace)
+            failure = ComponentFailed(self.name, self.window, cause, trace)
             failure.look(message)
             raise failure
         return message

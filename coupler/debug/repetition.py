@@ -77,17 +77,17 @@ class Repetition:
         print(f"window {self.request.window} reached; outputs until here {bits}", flush=True)
 
     def _say_failure(self, error: BaseException) -> None:
-        said = str(error)
+        text = str(error)
         if not isinstance(error, MessageError):
             report = failure(error)
-            said = f"{report['error']}: {report['text']}"
+            text = f"{report['error']}: {report['text']}"
         fault = self.request.fault
         if not fault:
-            again = "; in the run it did not fail here"
+            comparison = "; in the run it did not fail here"
         else:
-            again = ", as in the run" if said == fault else f"; in the run it was: {fault}"
+            comparison = ", as in the run" if text == fault else f"; in the run it was: {fault}"
         name, window = self.request.component, self.request.window
-        print(f"{name} failed in window {window}: {said}{again}", flush=True)
+        print(f"{name} failed in window {window}: {text}{comparison}", flush=True)
 
     def _compare(self, entry: Entry, message: Message) -> None:
         """Compare an answer with that of the run: the bits of its outputs, the stable step."""

@@ -59,8 +59,8 @@ def disk_error(path: Path, error: Exception, needed: int = 0) -> DiskError:
 
 def number_of(error: BaseException | None) -> int | None:
     """Number of the system's error; HDF5 has it in its text alone."""
-    said = re.search(r"errno = (\d+)", str(error))
-    return int(said[1]) if said else getattr(error, "errno", None)
+    match = re.search(r"errno = (\d+)", str(error))
+    return int(match[1]) if match else getattr(error, "errno", None)
 
 
 def disk_of(path: Path) -> Path:

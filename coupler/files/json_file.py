@@ -48,8 +48,8 @@ class JsonFile:
 
 def require_writable(path: Path) -> None:
     """Refuse a file for results that cannot be written, before anything is computed for it."""
-    there = path if path.exists() else path.parent
-    if path.is_dir() or not there.exists() or not os.access(there, os.W_OK):
+    place = path if path.exists() else path.parent
+    if path.is_dir() or not place.exists() or not os.access(place, os.W_OK):
         raise SceneError(
             f"--json {path}: it must be a file that can be written; there is no such folder, or it "
             "is read-only. Name another."

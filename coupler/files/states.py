@@ -64,10 +64,10 @@ def choose(folder: Path, time: float | None) -> Path:
     if time is None:
         return paths[-1]
     times = [time_of(path) for path in paths]
-    for path, there in zip(paths, times, strict=True):
-        if abs(there - time) <= ROUNDING * max(time, there):
+    for path, state_time in zip(paths, times, strict=True):
+        if abs(state_time - time) <= ROUNDING * max(time, state_time):
             return path
-    known = ", ".join(f"{there:g}" for there in dict.fromkeys(times))
+    known = ", ".join(f"{state_time:g}" for state_time in dict.fromkeys(times))
     raise SceneError(
         f"begin_from.time must be that of a state which the run in {folder} kept, at {known} s; "
         f"found {time:g} s. Choose one of these, or let that run keep another in output.states."

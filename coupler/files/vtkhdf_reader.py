@@ -35,9 +35,9 @@ def _open(path: Path | str) -> Iterator[h5py.File]:
                 )
             yield file
     except UNREADABLE as error:
-        said = " ".join(str(error).split())
+        cause = " ".join(str(error).split())
         raise SceneError(
-            f"view file {path}: it must be a VTKHDF file; {said}. Run the scene again."
+            f"view file {path}: it must be a VTKHDF file; {cause}. Run the scene again."
         ) from error
 
 

@@ -71,8 +71,8 @@ def identify(
     others = header.get("ranks", [])
     count = scene.components[name].ranks
     if not isinstance(others, list) or len(others) != count - 1:
-        said = f"its hello must tell of {count - 1} further ranks; found {others!r:.80}."
-        raise ComponentFailed(name, 0, said)
+        cause = f"its hello must tell of {count - 1} further ranks; found {others!r:.80}."
+        raise ComponentFailed(name, 0, cause)
     log = log_of(folder, name)
     find_process(probe, header, log)
     if probe.host:

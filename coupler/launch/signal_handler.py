@@ -22,11 +22,11 @@ def handled_by(
         yield
         return
     ignored = signal.getsignal(signal.SIGHUP) is signal.SIG_IGN
-    there = terminals()
+    descriptors = terminals()
 
     def handle(number: int, frame: FrameType | None) -> None:
         if number == signal.SIGHUP:
-            silence(there)
+            silence(descriptors)
         handler(number, frame)
 
     handled = [number for number in numbers if not (ignored and number == signal.SIGHUP)]

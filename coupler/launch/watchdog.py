@@ -293,7 +293,7 @@ class Watchdog:
         place = participant.window
         if stack.compiles(calls):
             doing = doing.replace("computing", "compiling")
-        what = f"{component.waited:.1f} s " + (
+        duration = f"{component.waited:.1f} s " + (
             f"in window {place}" if participant.built else "to be built"
         )
         if component.probe.awaited:
@@ -305,7 +305,9 @@ class Watchdog:
         over = component.is_over()
         if over and not stack.compiles(calls):
             at = f", at {where[0].removeprefix('  File ')}" if where else ""
-            cause = f"stopped responding: kept the others waiting for {what}{usual}; {doing}{at}"
+            cause = (
+                f"stopped responding: kept the others waiting for {duration}{usual}; {doing}{at}"
+            )
             self.fail(component, cause, calls)
             return
         if over:
@@ -313,7 +315,7 @@ class Watchdog:
         component.reported, component.tell_at = True, 2.0 * component.waited
         wait = "has taken" if self.alone else "keeps the others waiting for"
         where = [] if stack.compiles(calls) else where  # calls of the compiler say nothing
-        say(f"{participant.name} {wait} {what}{usual}: {doing}", where)
+        say(f"{participant.name} {wait} {duration}{usual}: {doing}", where)
 
     def fail(self, component: Watched, cause: str, calls: str = "") -> None:
         """Decide that the run ends, as a component has failed, or that its process does."""

@@ -268,10 +268,11 @@ def sentences(advised: Mapping[str, Any]) -> list[str]:
     changes = [text for name, row in rows.items() if (text := _change(name, row))]
     head = f"Advice for {advised['cores']} cores"
     gain = f"{advised['advised_seconds']:.3g} s of computing instead of {advised['seconds']:.3g} s"
-    said = f"{head}: {', '.join(changes)}: {gain} (Amdahl's law)" if changes else ""
+    sentence = f"{head}: {', '.join(changes)}: {gain} (Amdahl's law)" if changes else ""
     return [
         *([f"Waits: {'; '.join(waited)}"] if waited else []),
-        said or f"{head}: as they are, {', '.join(_now(name, row) for name, row in rows.items())}",
+        sentence
+        or f"{head}: as they are, {', '.join(_now(name, row) for name, row in rows.items())}",
     ]
 
 

@@ -134,9 +134,9 @@ def _check_unit(expectation: Expectation, field: Field) -> list[str]:
     remedy = f"Give value and within in {unit}"
     if expectation.measure not in MEASURED_IN:
         remedy += f", or the scale that makes {expectation.unit} of {unit}"
-    what = expectation.field if expectation.measure not in MEASURED_IN else expectation.measure
+    quantity = expectation.field if expectation.measure not in MEASURED_IN else expectation.measure
     return [
-        f"expectation {expectation.name}: unit must be {unit}, that of {what}; found "
+        f"expectation {expectation.name}: unit must be {unit}, that of {quantity}; found "
         f"{shown(expectation.unit)}. {remedy}."
     ]
 

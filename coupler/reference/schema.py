@@ -154,20 +154,20 @@ def _in_address(name: str) -> str:
 
 
 def _of_kinds(
-    what: str, kinds: Iterable[str], table: Mapping[tuple[str, str], Schema], common: Schema
+    subject: str, kinds: Iterable[str], table: Mapping[tuple[str, str], Schema], common: Schema
 ) -> Schema:
     """Define what a table of any kind may say: by its kind, those of all kinds and its own keys."""
-    definitions, known = {}, [kind for kind in kinds if (what, kind) in table]
+    definitions, known = {}, [kind for kind in kinds if (subject, kind) in table]
     for kind in known:
-        of_kind = table[what, kind]
+        of_kind = table[subject, kind]
         properties = {**common["properties"], **of_kind.get("properties", {})}
-        definitions[_in_address(f"keys.{what}.{kind}")] = of_kind
-        definitions[_in_address(f"{what}.{kind}")] = {**of_kind, "properties": properties}
-    free = [] if what == "link" else [OWN_CLASS]
+        definitions[_in_address(f"keys.{subject}.{kind}")] = of_kind
+        definitions[_in_address(f"{subject}.{kind}")] = {**of_kind, "properties": properties}
+    free = [] if subject == "link" else [OWN_CLASS]
     names = {"anyOf": [{"enum": list(kinds)}, *free]}
     kind_key = {**common["properties"]["kind"], **names}
     kind_key.pop("type", None)
-    definitions[what] = {
+    definitions[subject] = {
         "type": "object",
         "description": common["description"],
         "properties": {**common["properties"], "kind": kind_key},
@@ -175,12 +175,12 @@ def _of_kinds(
         "allOf": [
             {
                 "if": {"properties": {"kind": {"const": kind}}, "required": ["kind"]},
-                "then": _to(f"{what}.{kind}"),
+                "then": _to(f"{subject}.{kind}"),
             }
             for kind in known
         ],
         # Always met: for editors that look for keys here, and not below "then".
-        "anyOf": [*(_to(f"{what}.{kind}") for kind in known), {}],
+        "anyOf": [*(_to(f"{subject}.{kind}") for kind in known), {}],
     }
     return definitions
 

@@ -47,12 +47,12 @@ TEMPLATES = {
 }
 
 
-def write_new(what: str, name: str, folder: Path) -> list[Path]:
+def write_new(subject: str, name: str, folder: Path) -> list[Path]:
     """Write the files of a starting point into a folder that is not there yet.
 
     Parameters
     ----------
-    what : {"scene", "component", "link"}
+    subject : {"scene", "component", "link"}
     name : str
         Of the scene, or of the package and the kind.
     folder : Path
@@ -68,23 +68,23 @@ def write_new(what: str, name: str, folder: Path) -> list[Path]:
     SceneError
         The name may not be used, or the folder is there.
     """
-    _check_name(what, name)
+    _check_name(subject, name)
     if folder.exists():
         raise SceneError(
-            f"new {what}: the folder must not exist yet, nothing is overwritten; found "
+            f"new {subject}: the folder must not exist yet, nothing is overwritten; found "
             f"{shown(str(folder))}. Choose another name, or --out DIR."
         )
     paths = []
-    for path, text in starting_point(what, name).items():
+    for path, text in starting_point(subject, name).items():
         (folder / path).parent.mkdir(parents=True, exist_ok=True)
         (folder / path).write_text(text, encoding="utf-8")
         paths.append(folder / path)
     return paths
 
 
-def starting_point(what: str, name: str) -> dict[str, str]:
+def starting_point(subject: str, name: str) -> dict[str, str]:
     """Texts of the files of a starting point by their paths, with a new name in them."""
-    template = TEMPLATES[what]
+    template = TEMPLATES[subject]
     text = (files(template.package) / "README.md").read_text(encoding="utf-8")
     return {
         _renamed(path, template.name, name): _renamed(inside, template.name, name)
@@ -92,9 +92,9 @@ def starting_point(what: str, name: str) -> dict[str, str]:
     }
 
 
-def next_commands(what: str, name: str, folder: Path) -> list[str]:
+def next_commands(subject: str, name: str, folder: Path) -> list[str]:
     """Commands to go on with."""
-    return [line.format(name=name, folder=folder) for line in TEMPLATES[what].next]
+    return [line.format(name=name, folder=folder) for line in TEMPLATES[subject].next]
 
 
 def _renamed(text: str, old: str, new: str) -> str:
@@ -108,19 +108,23 @@ def _in_classes(name: str) -> str:
     return "".join(part.capitalize() for part in name.split("_"))
 
 
-def _check_name(what: str, name: str) -> None:
+def _check_name(subject: str, name: str) -> None:
     if not NAME.fullmatch(name) or len(name) > LONGEST or keyword.iskeyword(name):
         raise SceneError(
-            f"new {what}: a name must be lower-case letters, digits and _, beginning with a "
+            f"new {subject}: a name must be lower-case letters, digits and _, beginning with a "
             f"letter, at most {LONGEST} characters, and no word of Python; found {shown(name)}. "
             "Choose another one."
         )
     taken = set(
-        library() if what == "scene" else known_kinds() if what == "component" else known_links()
+        library()
+        if subject == "scene"
+        else known_kinds()
+        if subject == "component"
+        else known_links()
     )
-    if name in taken or (what != "scene" and find_spec(name) is not None):
-        known = f"a {what}" if name in taken else "a module of Python"
+    if name in taken or (subject != "scene" and find_spec(name) is not None):
+        known = f"a {subject}" if name in taken else "a module of Python"
         raise SceneError(
-            f"new {what}: the name must be free; found {name}, {known} that is installed. Choose "
-            "another one."
+            f"new {subject}: the name must be free; found {name}, {known} that is installed. "
+            "Choose another one."
         )

@@ -165,12 +165,12 @@ def _draw_oscillation(panel: Any, ones: list[Expectation], computed: Curve) -> N
 def _draw_value(panel: Any, expectation: Expectation, computed: Curve) -> None:
     """Draw a single value as a mark or line with its tolerance, where the curve can show it."""
     assert expectation.value is not None
-    what = (
+    prefix = (
         "expected"
         if expectation.measure in ("at", "crossing")
         else f"expected {expectation.measure}"
     )
-    label, value = shortened(f"{what}: {expectation.source}"), expectation.value
+    label, value = shortened(f"{prefix}: {expectation.source}"), expectation.value
     style = {"color": BAND, "label": label, "markersize": 5, "capsize": 3, "zorder": 3}
     if expectation.measure == "at":
         panel.errorbar(expectation.begin, value, yerr=expectation.within, fmt="o", **style)
@@ -237,14 +237,14 @@ def _plain_name(expectation: Expectation, field: Field) -> str:
 
     A port says where or of what a field is, unless it holds the items of a component.
     """
-    port, _, what = expectation.field.replace("_", " ").partition(".")
+    port, _, quantity = expectation.field.replace("_", " ").partition(".")
     if expectation.axis is not None:
-        what += f" {AXES[expectation.axis]}" if field.shape == (3,) else f" {expectation.axis}"
+        quantity += f" {AXES[expectation.axis]}" if field.shape == (3,) else f" {expectation.axis}"
     elif field.shape:
-        what = f"|{what}|"
+        quantity = f"|{quantity}|"
     last = port.split()[-1]
     at = "" if port in OWN_ITEMS else f" at {last}" if last.startswith("gauge") else f", {port}"
-    return f"{what}{at} of {expectation.component}"
+    return f"{quantity}{at} of {expectation.component}"
 
 
 def _number(value: float) -> str:
@@ -258,17 +258,17 @@ def _field(expectation: Expectation, recording: Recording) -> Field:
 
 def _verdict(expectation: Expectation, outcome: Outcome | None) -> str:
     """Say what was measured, what was expected, and whether it was met."""
-    what = expectation.measure.replace("relative_rms", "relative RMS distance")
-    what = what.replace("rms", "RMS distance")
+    measure = expectation.measure.replace("relative_rms", "relative RMS distance")
+    measure = measure.replace("rms", "RMS distance")
     if expectation.measure == "at":
-        what = f"at {expectation.begin:g} s"
+        measure = f"at {expectation.begin:g} s"
     elif expectation.level is not None:
-        what = f"passes {expectation.level:g} at"
-    what = "" if what == expectation.name else f": {what}"
+        measure = f"passes {expectation.level:g} at"
+    measure = "" if measure == expectation.name else f": {measure}"
     if outcome is not None and outcome.not_reached is not None:
-        return f"{expectation.name}{what}: not reached (t = {outcome.not_reached:.4g} s)"
+        return f"{expectation.name}{measure}: not reached (t = {outcome.not_reached:.4g} s)"
     if outcome is None or outcome.value is None:
-        return f"{expectation.name}{what}: no value: NOT met"
+        return f"{expectation.name}{measure}: no value: NOT met"
     expected = f"at most {outcome.within:.3g}"
     if expectation.measure not in DISTANCES:
         expected = f"expected {outcome.reference:.4g} ± {outcome.within:.2g}"
@@ -280,4 +280,4 @@ def _verdict(expectation: Expectation, outcome: Outcome | None) -> str:
     if outcome.within:
         used = abs(outcome.value - outcome.reference) / outcome.within
         share = f", {used:.0%} of the tolerance used up"
-    return f"{expectation.name}{what} {outcome.value:.4g}, {expected}{unit}: {verdict}{share}"
+    return f"{expectation.name}{measure} {outcome.value:.4g}, {expected}{unit}: {verdict}{share}"

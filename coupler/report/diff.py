@@ -197,8 +197,8 @@ def sentence(difference: Difference | None) -> str:
         return f"{when}: {where}, {place}: {_exact(d.a)} against {_exact(d.b)}."
     if d.kind == "time":
         return f"window {d.window}: {where} is at {d.a!r} s against {d.b!r} s."
-    what = "the same until one ends" if d.kind == "windows" else f"different {d.kind}"
-    return f"{where or 'the recordings'}: {what}: {d.a} against {d.b}."
+    text = "the same until one ends" if d.kind == "windows" else f"different {d.kind}"
+    return f"{where or 'the recordings'}: {text}: {d.a} against {d.b}."
 
 
 def _exact(value: Value) -> str:

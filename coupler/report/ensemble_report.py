@@ -160,8 +160,8 @@ def _draw_histogram(panel: Any, row: Row, values: Sequence[float]) -> None:
     else:
         reference, spread = row["reference"], row["reference_deviation"]
         half = row["within"] if spread is None else spread
-        what = "tolerance" if spread is None else "standard deviation"
-        label = shortened(f"{row['source']}, ± {what}")
+        band = "tolerance" if spread is None else "standard deviation"
+        label = shortened(f"{row['source']}, ± {band}")
         panel.axvline(reference, color=REFERENCE, linewidth=1.5, label=label)
         panel.axvspan(reference - half, reference + half, color=REFERENCE, alpha=0.2, linewidth=0)
     panel.set(xlabel=f"{row['name']} [{row['unit']}]", ylabel="runs")

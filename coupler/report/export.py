@@ -53,10 +53,10 @@ def export(
             f"run {folder}: it has neither recorded fields nor a ledger to export. Name the folder "
             "of another run, or set output.record = true."
         )
-    if not force and (there := [path for path in (*files.values(), *ledger) if path.exists()]):
+    if not force and (existing := [path for path in (*files.values(), *ledger) if path.exists()]):
         raise SceneError(
-            f"export: {there[0]} must not exist; {len(there)} of the files do. Name another folder "
-            "by --out, or use --force."
+            f"export: {existing[0]} must not exist; {len(existing)} of the files do. Name another "
+            "folder by --out, or use --force."
         )
     if place.exists() and not place.is_dir():
         raise SceneError(f"export: {place} must be a folder; found a file. Name another by --out.")

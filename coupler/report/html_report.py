@@ -72,7 +72,7 @@ def _parts(run: Run) -> list[Part]:
     waits = sentences(results["advice"]) if results.get("advice") else []
     components = (results.get("timing") or {}).get("components") or {}
     notes = [
-        f"{name}: {note}" for name, told in (results.get("notes") or {}).items() for note in told
+        f"{name}: {note}" for name, texts in (results.get("notes") or {}).items() for note in texts
     ]
     bars = run_tables.error_bars(results)
     return [

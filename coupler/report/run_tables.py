@@ -164,14 +164,16 @@ def _share(energy: float | None, scale: float) -> str:
 def mass_changes(run: Mapping[str, Any]) -> str:
     """Which components' masses changed, by more than what is negligible."""
     drifts = (run.get("ledger") or {}).get("mass_drift") or {}
-    said = []
+    changes = []
     for name, drift in drifts.items():
         share = drift["relative"]
         if share is None:
-            said.append(f"mass of {name} changed by {drift['kg']:+.3g} kg from none")
+            changes.append(f"mass of {name} changed by {drift['kg']:+.3g} kg from none")
         elif abs(share) > MASS_TOLD:
-            said.append(f"mass of {name} changed by {100.0 * share:+.2g} % ({drift['kg']:+.3g} kg)")
-    return "Mass: " + ", ".join(said) if said else ""
+            changes.append(
+                f"mass of {name} changed by {100.0 * share:+.2g} % ({drift['kg']:+.3g} kg)"
+            )
+    return "Mass: " + ", ".join(changes) if changes else ""
 
 
 def mass_balances(run: Mapping[str, Any]) -> list[str]:
@@ -217,8 +219,8 @@ def time_shares(run: Mapping[str, Any]) -> str:
     times = {k: v for k, v in timing.items() if k not in ("components", "memory")}
     text = "Time: " + ", ".join(f"{k} {number(v)} s" for k, v in times.items()) if times else ""
     text += f"; memory {timing['memory'] / 1e6:.0f} MB" if timing.get("memory") else ""
-    again = run.get("repetitions")
-    text += f"; windows repeated {again} times" if again else ""
+    repetitions = run.get("repetitions")
+    text += f"; windows repeated {repetitions} times" if repetitions else ""
     lacking = run.get("unconverged")
     return text + (f"; {lacking} windows did not converge" if lacking else "")
 

@@ -63,10 +63,10 @@ def _draw(panel: Any, key: str, fields: RecordedFields) -> None:
         panel.fill_between(columns.times, low, high, alpha=0.25, linewidth=0, label="range")
         label = f"mean of {len(names)}"
         panel.plot(columns.times, columns.values.mean(axis=1), linewidth=1.2, label=label)
-    what = field.replace("_", " ")
+    quantity = field.replace("_", " ")
     mean = ", mean over each window" if fields.is_impulse(key) else ""
     panel.set_title(f"{component}: {port.replace('_', ' ')}{mean}", fontsize=9)
-    panel.set(xlabel="t [s]", ylabel=f"{what} [{series.unit}]")
+    panel.set(xlabel="t [s]", ylabel=f"{quantity} [{series.unit}]")
     panel.grid(alpha=0.3)
     if np.size(names) > 1:
         panel.legend(fontsize=7, frameon=False, ncols=2 if len(names) > 3 else 1)

@@ -70,8 +70,8 @@ def print_results(run: Mapping[str, Any], screen: Console, frame: box.Box | None
     """Print results on a console, their tables in a frame or plain."""
     screen.print(_headline(run))
     for warning in run.get("warnings") or []:
-        said = f"Warning of {warning.get('source', '?')}: {warning.get('text', warning)}"
-        screen.print(Text(said, style="red"))
+        text = f"Warning of {warning.get('source', '?')}: {warning.get('text', warning)}"
+        screen.print(Text(text, style="red"))
     for table in (expectations(run), error_bars(run), ledger(run), energies(run), timing(run)):
         if table.rows:
             screen.print(_drawn(table, frame))

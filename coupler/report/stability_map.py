@@ -14,11 +14,11 @@ LOOKS = {
     "unstable": {"marker": "x", "color": "tab:red"},
 }
 WIDE = 20.0  # ratio of the ends of an axis from which it is logarithmic
-Found = dict[str, Any]
+Row = dict[str, Any]
 
 
 def draw_maps(
-    scene: str, limits: Sequence[Found], units: Mapping[str, str], out: Path
+    scene: str, limits: Sequence[Row], units: Mapping[str, str], out: Path
 ) -> Path | None:
     """Draw a panel for each limit that was found for several values of a second parameter.
 
@@ -36,7 +36,7 @@ def draw_maps(
     return save(figure, out)
 
 
-def _draw(panel: Any, limits: Sequence[Found], units: Mapping[str, str]) -> None:
+def _draw(panel: Any, limits: Sequence[Row], units: Mapping[str, str]) -> None:
     """Draw the runs of a limit, and the lines of what was predicted and found."""
     points = {
         state: [
@@ -64,6 +64,6 @@ def _draw(panel: Any, limits: Sequence[Found], units: Mapping[str, str]) -> None
             panel.set(**{f"{axis}scale": "log"})
 
 
-def _other(limit: Found) -> float:
+def _other(limit: Row) -> float:
     """Value of the second parameter."""
     return float(next(iter(limit["against"].values())))

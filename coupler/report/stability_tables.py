@@ -10,7 +10,7 @@ from quintet.coupler.report.work_precision import three_digits
 
 NUMBERS = ("predicted", "found", "ratio", "degraded")  # of a limit, in the table
 HEADS = ("scene", "limit of", "at", "predicted", "by", "found", "ratio", "what breaks first")
-Found = dict[str, Any]
+Row = dict[str, Any]
 
 
 def with_unit(path: str, units: Mapping[str, str]) -> str:
@@ -18,14 +18,14 @@ def with_unit(path: str, units: Mapping[str, str]) -> str:
     return f"{path} [{units[path]}]" if path in units else path
 
 
-def print_limits(limits: Sequence[Found], units: Mapping[str, str], screen: Console) -> None:
+def print_limits(limits: Sequence[Row], units: Mapping[str, str], screen: Console) -> None:
     """Print a line of numbers for each limit, then how each was found."""
     screen.print(table(limits, units))
     for sentence in sentences(limits):
         screen.print(sentence)
 
 
-def table(limits: Sequence[Found], units: Mapping[str, str]) -> Table:
+def table(limits: Sequence[Row], units: Mapping[str, str]) -> Table:
     """One row of numbers for each limit."""
     columns = ["limit", "against", "predicted", "found", "ratio", "degraded", "then"]
     if all(limit["degraded"] is None for limit in limits):
@@ -42,25 +42,25 @@ def table(limits: Sequence[Found], units: Mapping[str, str]) -> Table:
     return screen_table
 
 
-def sentences(limits: Sequence[Found]) -> Iterator[str]:
+def sentences(limits: Sequence[Row]) -> Iterator[str]:
     """Say how each limit was found."""
     for limit in limits:
         place = f" at {against}" if (against := _against(limit)) else ""
         yield f"{limit['name']}{place}: {_how(limit)}"
 
 
-def _name(limit: Found, units: Mapping[str, str]) -> str:
+def _name(limit: Row, units: Mapping[str, str]) -> str:
     """Name of a limit, with the unit of its parameter; a factor of several has none."""
     parameter = limit["parameter"]
     unit = units.get(parameter) if isinstance(parameter, str) else None
     return f"{limit['name']} [{unit}]" if unit else str(limit["name"])
 
 
-def _against(limit: Found) -> str:
+def _against(limit: Row) -> str:
     return ", ".join(f"{k} = {three_digits(v)}" for k, v in (limit["against"] or {}).items())
 
 
-def _how(limit: Found) -> str:
+def _how(limit: Row) -> str:
     if not limit.get("complete", True):
         return f"search interrupted after {len(limit['runs'])} runs; repeat the command to continue"
     if limit["found"] is not None:
@@ -71,7 +71,7 @@ def _how(limit: Found) -> str:
     return f"holds from {first:g} to {last:g}"
 
 
-def markdown(scenes: Sequence[Found]) -> Iterator[str]:
+def markdown(scenes: Sequence[Row]) -> Iterator[str]:
     """Lines of one table of all scenes; numbers in SI units."""
     yield f"| {' | '.join(HEADS)} |"
     yield "|---|---|---|---:|---|---:|---:|---|"

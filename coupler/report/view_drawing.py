@@ -259,8 +259,8 @@ def add_legend(figure: Any, view: Sequence[Shown], still: Sequence[Still]) -> No
             handles.append(Patch(facecolor="none", edgecolor="#999999", label=by))
         elif len(shown.points) and not _is_named(shown):
             by = f" (coloured by {shown.quantity.name})" if coloured and shown.quantity else ""
-            what = "spheres" if shown.radius.any() else "particles" if len(shown.points) > 1 else ""
-            text = shown.name if what in ("", shown.name) else f"{shown.name}: {what}"
+            kind = "spheres" if shown.radius.any() else "particles" if len(shown.points) > 1 else ""
+            text = shown.name if kind in ("", shown.name) else f"{shown.name}: {kind}"
             colour = "none" if coloured else plain
             handles.append(
                 Line2D([], [], marker="o", linestyle="", markerfacecolor=colour,

@@ -199,8 +199,8 @@ def check_ours(folder: Path, kind: str) -> Marker:
     """Read the marker of a folder that must be a run's, its files plain ones."""
     marker = read_marker(folder)
     if marker is None or marker.kind != kind:
-        what = f"that of a {marker.kind}" if marker else "not that of a run"
-        raise SceneError(f"{folder}: it must be the folder of a {kind}; it is {what}.")
+        description = f"that of a {marker.kind}" if marker else "not that of a run"
+        raise SceneError(f"{folder}: it must be the folder of a {kind}; it is {description}.")
     _require_own(folder, (), marker)
     return marker
 

@@ -122,8 +122,8 @@ class ProgressReport:
             self._details.plain = ", ".join(details(reading, self.pace))
         elif now - self._shown >= LINE_INTERVAL or self.windows == 1 or ends:
             self._shown = now
-            said = [f"t = {reading.time:.4g} of {self.end:.4g} s", time_left(self.pace, self.end)]
-            print(", ".join(filter(None, [*said, *details(reading, self.pace)])), flush=True)
+            parts = [f"t = {reading.time:.4g} of {self.end:.4g} s", time_left(self.pace, self.end)]
+            print(", ".join(filter(None, [*parts, *details(reading, self.pace)])), flush=True)
 
     def close(self) -> None:
         """Leave the terminal as the bar is."""
@@ -149,14 +149,14 @@ def in_words(seconds: float) -> str:
 
 def details(reading: Reading, pace: Pace) -> list[str]:
     """Windows, their speed, who computes while others wait, repetitions, residual."""
-    said = [f"window {reading.windows}"]
+    parts = [f"window {reading.windows}"]
     if pace.seconds:
-        said += [f"{pace.windows:.3g} windows/s"]
-        said += [f"{name} computes {share:.0%}" for name, share in pace.shares().items()]
+        parts += [f"{pace.windows:.3g} windows/s"]
+        parts += [f"{name} computes {share:.0%}" for name, share in pace.shares().items()]
         repeated = pace.repetitions()
-        said += [] if repeated is None else [f"windows repeated {repeated:.1f} times"]
+        parts += [] if repeated is None else [f"windows repeated {repeated:.1f} times"]
     residual = reading.residual
-    return said if residual is None else [*said, f"momentum residual {residual:.0e}"]
+    return parts if residual is None else [*parts, f"momentum residual {residual:.0e}"]
 
 
 def shows_bar() -> bool:

@@ -67,8 +67,8 @@ def resume_scene(
         return _run(scene, folder, snapshot, own_process, rank)
 
 
-def _several(count: int, what: str) -> str:
-    return f", {count} {what}" if count > 1 else ""
+def _several(count: int, unit: str) -> str:
+    return f", {count} {unit}" if count > 1 else ""
 
 
 def headline(scene: Scene, folder: Path) -> str:

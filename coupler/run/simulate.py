@@ -262,9 +262,9 @@ class ActiveRun:
         if not isinstance(error, ComponentFailed):
             return
         time, headline = self.writer.time, self.scene.headline
-        if said := write_neighbourhood(self.folder, error, time, headline):
-            print(f"  {said}", file=sys.stderr, flush=True)
-            fault["neighbourhood"] = said
+        if sentence := write_neighbourhood(self.folder, error, time, headline):
+            print(f"  {sentence}", file=sys.stderr, flush=True)
+            fault["neighbourhood"] = sentence
 
     def _suspect_coupling(self) -> None:
         """Say beside a failure which couplings were doubtful before it."""

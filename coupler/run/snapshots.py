@@ -198,8 +198,8 @@ def latest(folder: Path, quietly: bool = False) -> Path:
     for path in reversed(snapshots(folder)):
         if is_sound(path):
             if wrong and not quietly:
-                said = f"quintet: {' '.join(wrong)} The run goes on from {path.name}."
-                print(said, file=sys.stderr, flush=True)
+                message = f"quintet: {' '.join(wrong)} The run goes on from {path.name}."
+                print(message, file=sys.stderr, flush=True)
             return path
         wrong.append(f"{path.name} is not as it was written: it was cut or changed.")
     if wrong:

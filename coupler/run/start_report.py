@@ -67,18 +67,18 @@ class StartReport:
 
     def doing(self) -> str:
         """What every component is at."""
-        said = [f"{name}: {last_line(log, self._sizes[name])}" for name, log in self.logs.items()]
-        return "; ".join([*said, *filter(None, [self._said])])
+        lines = [f"{name}: {last_line(log, self._sizes[name])}" for name, log in self.logs.items()]
+        return "; ".join([*lines, *filter(None, [self._said])])
 
     def _text(self) -> Text:
         return Text(f"{time.monotonic() - self._began:3.0f} s  {self.doing()}")
 
     def _print(self) -> None:
-        shown, again = "", LONG
+        shown, report_at = "", LONG
         while not self._over.wait(LINE_INTERVAL):
             doing, waited = self.doing(), time.monotonic() - self._began
-            if doing != shown or waited > again:
-                again = max(LONG, 2.0 * waited)
+            if doing != shown or waited > report_at:
+                report_at = max(LONG, 2.0 * waited)
                 with contextlib.suppress(OSError):  # nobody reads it any more
                     print(self._text().plain, flush=True)
             shown = doing

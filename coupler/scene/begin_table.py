@@ -99,25 +99,25 @@ def _components(
     asked: Any, before: Mapping[str, Any], present: Any, place: Path
 ) -> tuple[str, ...]:
     """Names of the components that begin from a run, which must have them, of the same kinds."""
-    there = before["components"]
+    former = before["components"]
     present = present if isinstance(present, dict) else {}
     present = {name: entry for name, entry in present.items() if isinstance(entry, dict)}
     if isinstance(asked, list) and asked:
         for name in map(str, asked):
-            for known, whose in ((present, "this scene"), (there, f"the run in {place}")):
+            for known, owner in ((present, "this scene"), (former, f"the run in {place}")):
                 if name not in known:
-                    where = f"begin_from.components: {name} of {whose}"
+                    where = f"begin_from.components: {name} of {owner}"
                     raise SceneError(unknown(where, name, known))
         names = tuple(map(str, asked))
     else:
-        names = tuple(name for name in present if name in there)
+        names = tuple(name for name in present if name in former)
     if not names:
         raise SceneError(
             f"begin_from: a component of this scene must be in the run in {place} too, by its name;"
-            f" there are {', '.join(there)}, here {', '.join(present)}. Name them alike."
+            f" there are {', '.join(former)}, here {', '.join(present)}. Name them alike."
         )
     for name in names:
-        was, is_now = there[name].get("kind"), present[name].get("kind")
+        was, is_now = former[name].get("kind"), present[name].get("kind")
         if was != is_now:
             raise SceneError(
                 f"begin_from: components.{name} must be of kind {was}, as in the run in {place}; "

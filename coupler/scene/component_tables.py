@@ -25,10 +25,10 @@ def require_components(path: Path, table: Table, mistakes: list[str]) -> Table:
     tables = table.get("components", {})
     if isinstance(tables, dict) and tables:
         return tables
-    said = "components: a scene needs at least one. Add [components.NAME]."
+    message = "components: a scene needs at least one. Add [components.NAME]."
     if tables:
-        said = f"components must be tables; found {shown(tables)}. Write [components.NAME]."
-    raise SceneError([f"{path.name}: {mistake}" for mistake in (*mistakes, said)])
+        message = f"components must be tables; found {shown(tables)}. Write [components.NAME]."
+    raise SceneError([f"{path.name}: {mistake}" for mistake in (*mistakes, message)])
 
 
 def read_components(
@@ -177,8 +177,10 @@ def _component(
         mistakes.append(beyond_computing(where, keys, error))
         return None
     except Exception as error:  # of any kind: what it does here is its author's
-        said = f"{type(error).__name__}: {error}"
-        mistakes.append(f"{where}: kind {kind} cannot tell its ports from these settings ({said}).")
+        cause = f"{type(error).__name__}: {error}"
+        mistakes.append(
+            f"{where}: kind {kind} cannot tell its ports from these settings ({cause})."
+        )
         return None
     return ComponentPlan(
         name, kind, manifest, keys, params, takes, gives, common.threads, common.ranks, plan, begun,
@@ -227,6 +229,6 @@ def _manifest(where: str, kind: str, mistakes: list[str]) -> Manifest | None:
     except QuintetError as error:
         mistakes.append(f"{where}.{error}")
     except (Exception, SystemExit) as error:  # of any kind: the module is its author's
-        said = f"{type(error).__name__}: {error}"
-        mistakes.append(f"{where}.kind {kind} cannot be imported ({said}). Name a module:Class.")
+        cause = f"{type(error).__name__}: {error}"
+        mistakes.append(f"{where}.kind {kind} cannot be imported ({cause}). Name a module:Class.")
     return None

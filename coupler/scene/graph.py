@@ -118,8 +118,8 @@ def mermaid(scene: Scene) -> str:
     for inner in scene.coupling.inner():
         lines += _subgraph(inner, number)
     for edge in edges(scene):
-        said = f"{edge.link}: {edge.giving_port} → {edge.taking_port}"
-        lines.append(f'    {number[edge.giver]} -- "{said}" --> {number[edge.taker]}')
+        label = f"{edge.link}: {edge.giving_port} → {edge.taking_port}"
+        lines.append(f'    {number[edge.giver]} -- "{label}" --> {number[edge.taker]}')
     return "\n".join(lines)
 
 

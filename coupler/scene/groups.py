@@ -130,8 +130,8 @@ def begins_wrong(
         try:
             initial[name] = components[name].initial()
         except Exception as error:  # of any kind: what it does here is its author's
-            said = f"{type(error).__name__}: {error}"
-            return [f"components.{name}: its start cannot be computed ({said}). Correct it."]
+            cause = f"{type(error).__name__}: {error}"
+            return [f"components.{name}: its start cannot be computed ({cause}). Correct it."]
     refused = [text for link in links for text in link.refusals(initial)]
     return [*refused, *lacking_items(expect, initial)]
 
@@ -151,7 +151,7 @@ def unknown_outputs(file: SceneFile, components: dict[str, ComponentPlan]) -> li
         for field in component.shows
     ]
     output = file.output
-    asked = (
+    lists = (
         ("fields", output.fields, known),
         ("watch", output.watch, known),
         ("colours", output.colours, shown),
@@ -164,10 +164,10 @@ def unknown_outputs(file: SceneFile, components: dict[str, ComponentPlan]) -> li
     return [
         f"output.{key}: {path} is not given with these settings. {remedy(path)}"
         if remedy(path)
-        else unknown(f"output.{key}: {path}", path, there)
-        for key, paths, there in asked
+        else unknown(f"output.{key}: {path}", path, names)
+        for key, paths, names in lists
         for path in paths
-        if path not in there and not path.startswith(unread)
+        if path not in names and not path.startswith(unread)
     ]
 
 

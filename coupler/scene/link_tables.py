@@ -39,9 +39,9 @@ def read_links(
             except SceneError as error:
                 mistakes += error.mistakes
             except Exception as error:  # of any kind: what a link does here is its author's
-                said = f"{type(error).__name__}: {error}"
+                cause = f"{type(error).__name__}: {error}"
                 mistakes.append(
-                    f"links.{number}: kind {kind} cannot be made from this table ({said})."
+                    f"links.{number}: kind {kind} cannot be made from this table ({cause})."
                 )
     for name, count in Counter(link.name for link in links).items():
         if count > 1:

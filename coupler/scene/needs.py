@@ -101,16 +101,16 @@ def require_memory(scene: Scene, elsewhere: Iterable[str] = ()) -> None:
         for name, plan in plans.items()
         if plan is not None
     }
-    whole, there = sum(need for _, need in needs.values()), machine_memory()
-    if whole <= there:
+    planned, memory = sum(need for _, need in needs.values()), machine_memory()
+    if planned <= memory:
         return
     parts = ", ".join(
         f"{name} {need / GIGA:.3g} GB for {items:.3g}" for name, (items, need) in needs.items()
     )
     raise SceneError(
         f"{scene.path.name}: components must fit into this machine's memory of "
-        f"{there / GIGA:.3g} GB; planned are {whole / GIGA:.3g} GB ({parts} particles, bodies or "
-        "elements). Coarsen the spacing, or start components on other hosts."
+        f"{memory / GIGA:.3g} GB; planned are {planned / GIGA:.3g} GB ({parts} particles, bodies "
+        "or elements). Coarsen the spacing, or start components on other hosts."
     )
 
 

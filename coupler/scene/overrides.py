@@ -35,8 +35,8 @@ def put_set(table: dict[str, Any], setting: str) -> list[str]:
     """Apply ``PATH=VALUE``, the value in TOML; return the mistakes."""
     path, equals, text = setting.partition("=")
     if not equals:
-        said = shown(setting)
-        return [f"--set needs PATH=VALUE; found {said}. Give it as in --set window=1e-3."]
+        quoted = shown(setting)
+        return [f"--set needs PATH=VALUE; found {quoted}. Give it as in --set window=1e-3."]
     if len(path) > LONGEST_KEY or path.count(".") >= DEEPEST:
         return [
             f"--set: a path must have at most {LONGEST_KEY} characters and {DEEPEST} parts; found "
@@ -109,8 +109,8 @@ def tell_repeated(settings: Iterable[str], swaps: Iterable[str]) -> None:
     for option, values in (("--set", settings), ("--swap", swaps)):
         for path, count in Counter(setting.partition("=")[0] for setting in values).items():
             if count > 1:
-                said = f"{option} {shown(path)} is given {count} times: the last one counts"
-                print(f"quintet: {said}", file=sys.stderr)
+                message = f"{option} {shown(path)} is given {count} times: the last one counts"
+                print(f"quintet: {message}", file=sys.stderr)
 
 
 def assignments(settings: Mapping[str, Any]) -> list[str]:

@@ -33,7 +33,7 @@ from quintet.coupler.scene.read import load
 from quintet.coupler.scene.sweep_axes import Axis
 from quintet.coupler.study.ensemble import scatter_of
 from quintet.coupler.study.run_jobs import Row, RunSeries, check_numbers, run_jobs
-from quintet.coupler.study.sweep_plan import Asked, plan
+from quintet.coupler.study.sweep_plan import SceneRequest, plan
 from quintet.coupler.study.sweep_progress import SweepProgress
 from quintet.coupler.study.sweep_run import JOURNAL, Job
 from quintet.interfaces.errors import SceneError
@@ -118,7 +118,7 @@ def run_calibrate(options: argparse.Namespace) -> int:
 
 
 def calibrate(
-    asked: Asked,
+    asked: SceneRequest,
     ranges: Sequence[KeyRange],
     to: str,
     out: Path | None,
@@ -196,7 +196,7 @@ class _Series:
     """What all batches of a calibration have in common."""
 
     fitted: Calibration
-    asked: Asked
+    asked: SceneRequest
     ranges: Sequence[KeyRange]
     expectation: Expectation
     reference: float

@@ -76,12 +76,12 @@ def _outcome(run: Row, name: str) -> Row | None:
 def _verdict(
     run: Row, base: Row | None, distance: float | None, base_distance: float | None
 ) -> Row:
-    for what, result in (("its run", run), ("the run of its preset alone", base)):
+    for subject, result in (("its run", run), ("the run of its preset alone", base)):
         if result is not None and result["status"] != "done":
             interrupted = result["status"] in ("interrupted", "not run")
             verdict = INTERRUPTED if interrupted else FAILED
             cause = (result.get("fault") or {}).get("cause") or result["status"]
-            return {"verdict": verdict, "cause": f"{what} is not done: {cause}"}
+            return {"verdict": verdict, "cause": f"{subject} is not done: {cause}"}
     if distance is None:
         cause = "the run has no value of it, so nothing is rejected. Find another control."
         return {"verdict": PASSES, "cause": cause}

@@ -81,9 +81,9 @@ class Controls:
             while run["status"] == ELSEWHERE and not self.stop():
                 time.sleep(AGAIN)
                 run = carry_out(job, self.stop)
-            what = " ".join(word for word in (scene.file.name, preset) if word)
+            label = " ".join(word for word in (scene.file.name, preset) if word)
             outcome = "found complete" if run.get(KEPT) else run["status"]
-            print(f"{what}: {', '.join(assignments(_own(settings)))}: {outcome}", flush=True)
+            print(f"{label}: {', '.join(assignments(_own(settings)))}: {outcome}", flush=True)
             self.runs[job.name] = run
         return self.runs[job.name]
 

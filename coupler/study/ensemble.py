@@ -31,7 +31,7 @@ from quintet.coupler.scene.read import load_variants
 from quintet.coupler.scene.scene import Scene
 from quintet.coupler.scene.sweep_axes import Axis
 from quintet.coupler.study.run_jobs import Row, RunSeries, check_numbers, run_jobs
-from quintet.coupler.study.sweep_plan import Asked, plan
+from quintet.coupler.study.sweep_plan import SceneRequest, plan
 from quintet.coupler.study.sweep_run import JOURNAL
 from quintet.interfaces.errors import SceneError
 
@@ -106,7 +106,7 @@ def run_ensemble(options: argparse.Namespace) -> int:
 
 
 def ensemble(
-    asked: Asked,
+    asked: SceneRequest,
     out: Path | None,
     runs: int,
     seed: int,

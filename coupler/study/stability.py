@@ -34,7 +34,7 @@ from quintet.interfaces.errors import SceneError
 
 NAME = "stability.json"
 KEYS = ("scene", "limits")  # of the file for programs
-Found = dict[str, Any]
+Row = dict[str, Any]
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,9 +44,9 @@ class Searches:
     options: argparse.Namespace
     stop: StopRequest
 
-    def find(self, scene: str, limits: list[Limit], folder: Path) -> list[Found]:
+    def find(self, scene: str, limits: list[Limit], folder: Path) -> list[Row]:
         """Find the limits of a scene in a folder; the last may be incomplete after an interrupt."""
-        summaries: list[Found] = []
+        summaries: list[Row] = []
         for limit in limits:
             for number, other in enumerate(limit.others()):
                 place = folder / limit.folder
@@ -102,7 +102,7 @@ def _run_all(options: argparse.Namespace) -> int:
     if options.readme:
         marked_place.LIMITS.check(options.readme)
     before = json.loads(options.json.read_text("utf-8") or "[]") if _is_there(options.json) else []
-    content: dict[str, Found] = {entry["scene"]: entry for entry in before}
+    content: dict[str, Row] = {entry["scene"]: entry for entry in before}
     # Every scene is checked before anything starts.
     scenes = {name: load_variants(name) for name in _cheapest_first()}
     content = {name: content[name] for name in scenes if name in content}
@@ -126,7 +126,7 @@ def _run_all(options: argparse.Namespace) -> int:
     return _status([limit for scene in content.values() for limit in scene["limits"]])
 
 
-def _asked(options: argparse.Namespace) -> Found:
+def _asked(options: argparse.Namespace) -> Row:
     """What was asked for beside the scene itself."""
     return {"preset": options.preset, "settings": options.settings, "swaps": options.swap}
 
@@ -156,8 +156,8 @@ def _cheapest_first() -> list[str]:
 
 
 def _write(
-    name: str, scene: Scene, limits: list[Found], folder: Path, asked: Found, command: str
-) -> Found:
+    name: str, scene: Scene, limits: list[Row], folder: Path, asked: Row, command: str
+) -> Row:
     """Write the limits of a scene; return the content."""
     content = {
         "scene": name,
@@ -171,7 +171,7 @@ def _write(
     return content
 
 
-def _keys_of(limits: list[Found]) -> Iterator[str]:
+def _keys_of(limits: list[Row]) -> Iterator[str]:
     """Paths of the keys that limits are about."""
     for limit in limits:
         parameter = limit["parameter"]
@@ -179,13 +179,13 @@ def _keys_of(limits: list[Found]) -> Iterator[str]:
         yield from limit["against"] or ()
 
 
-def _show(content: Found, folder: Path) -> None:
+def _show(content: Row, folder: Path) -> None:
     """Print the limits, and draw the maps of those in two parameters."""
     print_limits(content["limits"], content["units"], console())
     if drawn := draw_maps(content["scene"], content["limits"], content["units"], folder / PICTURE):
         print(f"drawn in {drawn}")
 
 
-def _status(limits: list[Found]) -> int:
+def _status(limits: list[Row]) -> int:
     """Exit status: 0 where every limit was found."""
     return results.DONE if all(limit["found"] is not None for limit in limits) else results.UNMET

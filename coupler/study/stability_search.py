@@ -25,7 +25,7 @@ VERDICTS = "verdicts.json"  # in the folder of a limit
 SLOWEST = 20.0  # times the first run of a limit, and MARGIN: a run that takes longer has stalled
 MARGIN = 60.0  # s
 RULES = ("energy", "momentum", "bounds", "expectation")  # of a limit, by which a run is judged
-Found = dict[str, Any]
+Row = dict[str, Any]
 
 
 class Interrupted(Exception):
@@ -44,7 +44,7 @@ class Search:
     verdicts: dict[float, Verdict] = field(default_factory=dict)
     time_limit: float = FOREVER  # s, of a run
     seconds: float = 0.0  # of all runs
-    _former: Found = field(default_factory=dict)  # verdicts in the folder, by the hash of the run
+    _former: Row = field(default_factory=dict)  # verdicts in the folder, by the hash of the run
 
     def __post_init__(self) -> None:
         path = self.folder / VERDICTS
@@ -67,7 +67,7 @@ class Search:
             print(f"{self.limit.name} = {value:.6g}: {verdict.state}{reason}", flush=True)
         return self.verdicts[value]
 
-    def _run(self, value: float) -> Found:
+    def _run(self, value: float) -> Row:
         """Run with a value; return the verdict, and how long it took [s]."""
         began, folder = time.monotonic(), self.folder / f"{value:.6g}"
         run = self.child.run(self.limit.settings(value, self.other), folder, self.time_limit)
@@ -107,7 +107,7 @@ def find_limit(search: Search) -> bool:
     return True
 
 
-def summary(search: Search, predicted: float | None, is_complete: bool = True) -> Found:
+def summary(search: Search, predicted: float | None, is_complete: bool = True) -> Row:
     """Summarize a limit from the runs that were made."""
     limit, keys = search.limit, search.limit.table
     edges = {

@@ -13,7 +13,7 @@ from quintet.coupler.scene.read import load, load_variants, parse
 from quintet.coupler.scene.scene import Scene
 from quintet.coupler.scene.study_table import Refinement
 from quintet.coupler.study.run_hash import run_hash
-from quintet.coupler.study.sweep_plan import Asked
+from quintet.coupler.study.sweep_plan import SceneRequest
 from quintet.coupler.study.sweep_run import Job
 
 KEPT = "studies.json"  # beside the folders of the scenes: what was measured before
@@ -56,7 +56,7 @@ def plan_all(folder: Path, scenes: Mapping[str, Path], retry: int = 1) -> list[P
         for refinement in variants.study:
             scene = load(str(path), settings=list(assignments(refinement.settings)))
             seconds = before.get(_key(refinement.settings)) or estimated(base, scene)
-            asked: Asked = (str(path), "", [], [], "")
+            asked: SceneRequest = (str(path), "", [], [], "")
             job = Job(
                 run_hash(scene), folder, asked, refinement.settings, scene.resolved, versions, retry
             )

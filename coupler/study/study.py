@@ -176,9 +176,9 @@ def _run_wanted(child: ChildRun, wanted: Row, folder: Path) -> None:
     row = row_of(refinement, child.run(offer["settings"], place))
     error = worst(row, wanted["judged"])
     wanted["ran"] = {**row, "delivers": error is not None and error <= wanted["error"]}
-    said = "unknown" if error is None else f"{100.0 * error:.3g} %"
+    text = "unknown" if error is None else f"{100.0 * error:.3g} %"
     verdict = "delivers" if wanted["ran"]["delivers"] else "does not deliver"
-    print(f"{EXTRAPOLATED}: {row['status']}, {row['cpu']:.3g} s of processor time; error {said}: "
+    print(f"{EXTRAPOLATED}: {row['status']}, {row['cpu']:.3g} s of processor time; error {text}: "
           f"it {verdict} {100.0 * wanted['error']:g} %", flush=True)  # fmt: skip
 
 

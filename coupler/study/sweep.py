@@ -20,7 +20,7 @@ from quintet.coupler.run.folder import share
 from quintet.coupler.scene.overrides import command_line, run_arguments
 from quintet.coupler.scene.sweep_axes import Axis, combinations, read_axes
 from quintet.coupler.study.run_jobs import Row, RunSeries, check_numbers, run_jobs
-from quintet.coupler.study.sweep_plan import Asked, axes_of_jobs, plan
+from quintet.coupler.study.sweep_plan import SceneRequest, axes_of_jobs, plan
 from quintet.coupler.study.sweep_run import JOURNAL
 from quintet.interfaces.errors import SceneError
 
@@ -102,7 +102,7 @@ def _engine(
     return contextlib.nullcontext()
 
 
-def _write_rules(options: argparse.Namespace, asked: Asked, axes: Sequence[Axis]) -> int:
+def _write_rules(options: argparse.Namespace, asked: SceneRequest, axes: Sequence[Axis]) -> int:
     """Write the sweep as a Snakefile; run nothing."""
     # Only sweeps that others run need it.
     from quintet.coupler.study import snakefile
@@ -119,7 +119,7 @@ def _write_rules(options: argparse.Namespace, asked: Asked, axes: Sequence[Axis]
 
 
 def sweep(
-    asked: Asked,
+    asked: SceneRequest,
     axes: Sequence[Axis],
     out: Path | None,
     jobs: int,

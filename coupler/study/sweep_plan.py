@@ -18,11 +18,11 @@ from quintet.interfaces.errors import SceneError
 from quintet.interfaces.quantities import has_quantities
 
 # Scene, preset, settings, swaps and transport, as on the command line.
-Asked = tuple[str, str, list[str], list[str], str]
+SceneRequest = tuple[str, str, list[str], list[str], str]
 
 
 def plan(
-    series: str, asked: Asked, products: Sequence[Mapping[str, Any]], jobs: int, retry: int
+    series: str, asked: SceneRequest, products: Sequence[Mapping[str, Any]], jobs: int, retry: int
 ) -> tuple[str, list[Job]]:
     """Check every run; return the scene's name and the runs, whose folder is unknown.
 

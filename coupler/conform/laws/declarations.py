@@ -137,9 +137,9 @@ def describe_tells_what_its_ports_announce(trial: Trial) -> None:
             bool(np.isfinite(array).all()),
             f"describe: {key} must be finite; found {array[~np.isfinite(array)][:1]}. Correct it.",
         )
-    again = component.describe()
+    repeated = component.describe()
     require_same_bits(
-        again, described, "describe: called twice it must return the same", "Keep it so."
+        repeated, described, "describe: called twice it must return the same", "Keep it so."
     )
 
 

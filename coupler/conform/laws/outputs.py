@@ -117,23 +117,23 @@ def outputs_are_copies(trial: Trial) -> None:
     component, other = trial.build(), trial.build()
     trial.move(component)
     trial.move(other)
-    for name, told in _told(component, trial).items():
-        unwritten = copies(told)
-        for array in told.values():
+    for name, arrays in _outgoing(component, trial).items():
+        unwritten = copies(arrays)
+        for array in arrays.values():
             if array.flags.writeable:
                 array[...] = -7 if array.dtype.kind in "iu" else np.nan
         require_same_bits(
-            _told(component, trial)[name],
+            _outgoing(component, trial)[name],
             unwritten,
             f"{name}: arrays that go out must be copies, so that writing to them changes nothing",
             "Return copies.",
         )
-    before = _told(component, trial)
-    kept_all = {name: copies(told) for name, told in before.items()}
+    before = _outgoing(component, trial)
+    kept_all = {name: copies(arrays) for name, arrays in before.items()}
     after = trial.move(component, first=9)
-    for name, told in before.items():
+    for name, arrays in before.items():
         require_same_bits(
-            told,
+            arrays,
             kept_all[name],
             f"{name}: arrays that went out must not change as the component goes on",
             "Return copies.",
@@ -146,7 +146,7 @@ def outputs_are_copies(trial: Trial) -> None:
     )
 
 
-def _told(component: Component, trial: Trial) -> dict[str, Fields]:
+def _outgoing(component: Component, trial: Trial) -> dict[str, Fields]:
     totals = component.totals()
     return {
         "give": component.give(frozenset(trial.outputs)),
@@ -227,8 +227,8 @@ def at_rest_nothing_comes_out(trial: Trial) -> None:
         expected = np.zeros_like(array) if key in trial.impulses else before[key]
         off = np.abs(array - expected)
         if not (off <= 1e-14).all():
-            what = "zero" if key in trial.impulses else "as it was"
+            rule = "zero" if key in trial.impulses else "as it was"
             raise LawBroken(
-                f"give: where nothing comes in, {key} must be {what}; it is off by "
+                f"give: where nothing comes in, {key} must be {rule}; it is off by "
                 f"{float(off.max()):.3g}. Look for what drives it, or let the case say still=False."
             )

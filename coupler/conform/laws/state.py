@@ -26,13 +26,13 @@ def load_then_repeat_gives_the_same_bits(trial: Trial) -> None:
     trial.move(component)
     saved = copies(component.save())
     first = trial.move(component, first=9)
-    for which, other in (("the same", component), ("another", trial.build())):
+    for label, other in (("the same", component), ("another", trial.build())):
         other.load(trial.received(saved))
-        rule = f"load: {which} component must come back to what was saved"
+        rule = f"load: {label} component must come back to what was saved"
         require_same_bits(other.save(), saved, rule, SAVE_ALL)
-        again = trial.move(other, first=9)
-        for number, (before, two) in enumerate(zip(first, again, strict=True), 1):
-            rule = f"load: then repeated, {which} component must give the same bits, step {number}"
+        repeated = trial.move(other, first=9)
+        for number, (before, two) in enumerate(zip(first, repeated, strict=True), 1):
+            rule = f"load: then repeated, {label} component must give the same bits, step {number}"
             require_same_bits(two, before, rule, SAVE_ALL)
 
 

@@ -22,15 +22,15 @@ def the_stable_step_is_positive(trial: Trial) -> None:
     """At the start and after steps; asked twice it is the same, and asking changes nothing."""
     component, unasked = trial.build(), trial.build()
     for number in range(4):
-        step, again = (float(component.stable_dt()) for _ in range(2))
+        step, repeated = (float(component.stable_dt()) for _ in range(2))
         require(
             step > 0.0,  # untrue of nan
             f"stable_dt: it must be above 0 s; found {step} after {number} step(s). Look at the "
             "state that it is computed from.",
         )
         require(
-            step == again,
-            f"stable_dt: asked twice it must be the same; found {step!r} and {again!r} after "
+            step == repeated,
+            f"stable_dt: asked twice it must be the same; found {step!r} and {repeated!r} after "
             f"{number} step(s). Compute it from the state alone.",
         )
         trial.move(component, 1, first=number + 1)
@@ -49,13 +49,13 @@ def the_stable_step_is_the_same_after_load(trial: Trial) -> None:
     trial.move(component)
     saved, expected = trial.received(component.save()), float(component.stable_dt())
     trial.move(component, first=9)
-    for which, other in (("the same", component), ("another", trial.build())):
+    for label, other in (("the same", component), ("another", trial.build())):
         other.load(saved)
         step = float(other.stable_dt())
         require(
             step == expected,
             f"stable_dt: after load it must be what it was when the state was saved, {expected!r}; "
-            f"found {step!r} in {which} component. Save what it is computed from.",
+            f"found {step!r} in {label} component. Save what it is computed from.",
         )
 
 
