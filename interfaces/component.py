@@ -98,7 +98,7 @@ class Port:
 
 def lacked(ports: Iterable[Port], path: str) -> str:
     """What to set for ports to have a field, ``"port.field"``; "" where nothing would help."""
-    remedies = {f"{port.name}.{name}": said for port in ports for name, said in port.lacks}
+    remedies = {f"{port.name}.{name}": remedy for port in ports for name, remedy in port.lacks}
     return remedies.get(path, "")
 
 

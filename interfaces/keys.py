@@ -45,10 +45,10 @@ class Key:
 
 def keys(params: type) -> list[Key]:
     """Return the keys of a class made by `parameters`, in its order."""
-    said = documented(params)
+    texts = documented(params)
     fields = fields_of(params)
     return [
-        _key(info.alias or name, info, *said.get(name, ("", ""))) for name, info in fields.items()
+        _key(info.alias or name, info, *texts.get(name, ("", ""))) for name, info in fields.items()
     ]
 
 

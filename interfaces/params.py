@@ -214,16 +214,16 @@ def _without_kinds(place: tuple[Any, ...], table: Any) -> tuple[Any, ...]:
 
 def _drop_renamed(params: type, mistakes: list[dict[str, Any]]) -> list[dict[str, Any]]:
     """All but keys said to be missing that are there under their old names."""
-    there = {
+    renamed = {
         (*mistake["loc"][:-1], *new.split("."))
         for mistake in mistakes
         if (new := _renamed(params, [str(part) for part in mistake["loc"]]))
     }
-    gone = ("missing", "missing_argument")
+    missing = ("missing", "missing_argument")
     return [
         mistake
         for mistake in mistakes
-        if mistake["loc"] not in there or mistake["type"] not in gone
+        if mistake["loc"] not in renamed or mistake["type"] not in missing
     ]
 
 

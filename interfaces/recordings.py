@@ -110,18 +110,18 @@ def readable(path: object) -> Iterator[None]:
     try:
         yield
     except UNREADABLE as error:
-        said = " ".join(f"{type(error).__name__}: {error}".split())
+        cause = " ".join(f"{type(error).__name__}: {error}".split())
         raise SceneError(
-            f"recording {path}: it must be a whole recording of quintet; reading it found {said}. "
+            f"recording {path}: it must be a whole recording of quintet; reading it found {cause}. "
             "As it is not a whole recording, copy it again from where it was made, or run the "
             "scene again."
         ) from error
 
 
-def damaged(path: object, what: str) -> SceneError:
+def damaged(path: object, part: str) -> SceneError:
     """Say which part of a recording is not as it was written."""
     return SceneError(
-        f"recording {path}: {what} is not as it was written: the file was changed or cut. Copy it "
+        f"recording {path}: {part} is not as it was written: the file was changed or cut. Copy it "
         "again from where it was made, or run the scene again (--resume, if it was interrupted)."
     )
 
@@ -211,8 +211,8 @@ class CheckedFile:
             for row, column, check in _checks(group, name, rows):
                 if check != wanted[row, column]:
                     key = ["", *group["fields"]][column]
-                    what = f"{name}.{key}" if key else f"the time of {name}"
-                    raise damaged(self.path, f"window {row} of {what}")
+                    part = f"{name}.{key}" if key else f"the time of {name}"
+                    raise damaged(self.path, f"window {row} of {part}")
 
 
 def _tell(path: object) -> None:

@@ -57,16 +57,16 @@ class ForeignMessages:
 
     def summary(self) -> list[str]:
         """What came so far, in sentences."""
-        said = []
+        texts = []
         if self.count:
             number = f"{'at least ' * self.at_least}{self.count}"
-            said.append(
+            texts.append(
                 f"{number} message(s) from outside the run were dropped; the first: {self.first}. "
                 "The run is not affected. End the program that sends them, or use another endpoint."
             )
         if self.refused:
-            said.append(f"{self.refused} request(s) to join were refused; the last: {self.reason}")
-        return said + self.frames.summary()
+            texts.append(f"{self.refused} request(s) to join were refused; the last: {self.reason}")
+        return texts + self.frames.summary()
 
     def _count_new(self) -> int:
         """Count what came since the last look, up to `TOO_MANY` + 1."""

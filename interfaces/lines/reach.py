@@ -33,14 +33,14 @@ def await_listener(endpoint: str, seconds: float, say: Callable[[str], object]) 
     if match is None:
         return
     limit = time.monotonic() + seconds
-    said = False
+    is_reported = False
     while time.monotonic() < limit:
         try:
             socket.create_connection((match[2].strip("[]"), int(match[3])), SECONDS).close()
         except ConnectionRefusedError:
-            if not said:
+            if not is_reported:
                 say(f"nobody listens at {endpoint} yet; waiting for up to {seconds:g} s")
-            said = True
+            is_reported = True
             time.sleep(RETRY)
         except OSError:
             return  # `obstacle` says why
@@ -80,8 +80,8 @@ def obstacle(endpoint: str, security: Security | None) -> Obstacle:
             "the run listens with plain tcp; tls was tried. Give the endpoint that the run prints."
         )
     if reply and not reply.startswith(ZENOH_CLOSE):
-        said = f"it answers {reply[:20]!r}"
-        return Obstacle(f"what listens there is no run of quintet ({said}). Correct the port.")
+        answer = f"it answers {reply[:20]!r}"
+        return Obstacle(f"what listens there is no run of quintet ({answer}). Correct the port.")
     silent = "what listens there does not answer as a run of quintet does. Correct the port."
     return Obstacle() if reply else Obstacle(silent, certain=False)
 
@@ -118,19 +118,19 @@ def _of_handshake(host: str, port: int, security: Security) -> Obstacle:
     except ssl.SSLCertVerificationError as error:
         return Obstacle(_of_certificate(host, error, security))
     except ssl.SSLError as error:
-        said = str(error.reason or error).lower().replace("_", " ")
-        if "certificate required" in said:
+        reason = str(error.reason or error).lower().replace("_", " ")
+        if "certificate required" in reason:
             return Obstacle("the run asks for a certificate; none was shown. Correct scene.tls.")
-        if "expired" in said:
+        if "expired" in reason:
             return Obstacle(
                 f"the run refuses the certificate {security.certificate}: it has expired. Renew it."
             )
-        if any(words in said for words in OTHER_CLIENTS):
+        if any(words in reason for words in OTHER_CLIENTS):
             return Obstacle(
                 f"the run refuses the certificate {security.certificate}: its authority did not "
                 "sign it. Use a certificate of the run's authority."
             )
-        return Obstacle(f"the TLS handshake failed ({said}). Compare the certificates.")
+        return Obstacle(f"the TLS handshake failed ({reason}). Compare the certificates.")
     except OSError as error:
         return Obstacle(f"the TLS handshake was not answered ({error}).", certain=False)
     return Obstacle()

@@ -38,13 +38,13 @@ def failure(error: BaseException) -> dict[str, Any]:
         # What the failed functions hold is released, or there is none left to tell of it.
         traceback.clear_frames(error.__traceback__)
     is_ours = isinstance(error, QuintetError)
-    said = str(error)
+    text = str(error)
     if isinstance(error, SystemExit):
-        said = f"asked Python to exit, with status {error.code!r}; raise an error instead"
+        text = f"asked Python to exit, with status {error.code!r}; raise an error instead"
     return {
         "order": "failed",
         "error": type(error).__name__,
-        "text": sendable(said),
+        "text": sendable(text),
         "traceback": "" if is_ours else sendable("".join(traceback.format_exception(error))),
     }
 

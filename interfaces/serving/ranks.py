@@ -62,10 +62,10 @@ class LeadingLine:
         self._orders += 1
         return message
 
-    def _wait_for_all(self, said: Collection[Any], seconds: float) -> None:
-        """Wait until all other ranks have said something, or one of them has failed."""
+    def _wait_for_all(self, answers: Collection[Any], seconds: float) -> None:
+        """Wait until all other ranks have answered, or one of them has failed."""
         limit = time.monotonic() + seconds
-        while len(said) < len(self._others) and time.monotonic() < limit and not self._over:
+        while len(answers) < len(self._others) and time.monotonic() < limit and not self._over:
             time.sleep(LOOKING)
 
     def send(self, header: Mapping[str, Any], fields: Fields) -> None:

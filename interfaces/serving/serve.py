@@ -202,10 +202,10 @@ class Server:
     def _integral(self, key: str) -> bool:
         return key in self.inputs.impulses
 
-    def advance(self, window: float, asked: int = 0) -> tuple[int, Sums, Fields]:
+    def advance(self, window: float, count: int = 0) -> tuple[int, Sums, Fields]:
         """Step through a window [s]; tell the steps, the impulses applied, the last outputs.
 
-        With `asked` in just so many equal steps, else in the fewest that are stable.
+        With `count` in that many equal steps, else in the fewest that are stable.
         """
         component, inputs, outputs = self.component, self.inputs, self.outputs
         outputs.begin()
@@ -216,8 +216,8 @@ class Server:
         outputs_now: Fields = {}
         while done < window:
             pieces = divide(window - done, self.stable())
-            if asked:
-                pieces = self._pieces(asked - steps, window - done)
+            if count:
+                pieces = self._pieces(count - steps, window - done)
             dt = (window - done) / pieces
             end = window if pieces == 1 else done + dt
             taken: Fields = {}
@@ -295,8 +295,8 @@ class Server:
         try:
             self.component.load(parts["component"])
         except (LookupError, TypeError, ValueError) as error:
-            if said := unlike(parts["component"], self.component.save()):
-                raise OrderError(f"a state must be one that was saved here; {said}.") from error
+            if text := unlike(parts["component"], self.component.save()):
+                raise OrderError(f"a state must be one that was saved here; {text}.") from error
             raise
         self._stable = None
         self.inputs.load(parts["inputs"])
