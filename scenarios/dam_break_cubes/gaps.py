@@ -81,9 +81,9 @@ def main(folders: list[str]) -> None:
         height.plot(run.time, run.position[:, TOP, 2], "C0" + line, label=label)
         window = max(1, round(SMOOTH / (run.time[1] - run.time[0])))
         even = np.ones(window) / window
-        for faces, colour, what in ((GAPS, "C1", "gaps"), (FRONTS, "C2", "upstream")):
+        for faces, colour, place_name in ((GAPS, "C1", "gaps"), (FRONTS, "C2", "upstream")):
             smooth = np.convolve(run.mean(faces), even, "same")
-            gaps.plot(middle, smooth, colour + line, label=f"{what}, {label}")
+            gaps.plot(middle, smooth, colour + line, label=f"{place_name}, {label}")
     for axes, name in (
         (place, "top cube's x from the gate [m]"),
         (height, "top cube's height [m]"),

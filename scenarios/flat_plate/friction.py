@@ -44,8 +44,8 @@ def main(folders: list[str]) -> None:
         x, stress, drag = friction(folder)
         panel.plot(x, stress / blasius(x), "o-", markersize=3, label=folder.name)
         near = [int(np.abs(x - place).argmin()) for place in PLACES]
-        told = ", ".join(f"{x[k]:.2f}: {stress[k] / blasius(x[k]):.3f}" for k in near)
-        print(f"{folder.name}: {told}, whole plate: {drag / DRAG:.3f}")
+        ratios = ", ".join(f"{x[k]:.2f}: {stress[k] / blasius(x[k]):.3f}" for k in near)
+        print(f"{folder.name}: {ratios}, whole plate: {drag / DRAG:.3f}")
     panel.axhline(1.0, color="k", linewidth=0.8)
     panel.set(xlim=(0.0, 1.0), ylim=(0.85, 1.15), xlabel="x [m]", ylabel="friction over Blasius'")
     panel.legend()

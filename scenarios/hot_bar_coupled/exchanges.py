@@ -45,9 +45,9 @@ def main(folders: list[str]) -> None:
             times = np.diff(recording.times("elements"))
             flow = 1e9 * recording.field("elements", "held.heat_flow")[1:, 0] / times
         print(f"{name}:")
-        for values, what, unit in ((between, "temperature", "K"), (flow, "heat flow", "nW")):
+        for values, label, unit in ((between, "temperature", "K"), (flow, "heat flow", "nW")):
             mean, error = values[SETTLED:].mean(), standard_error(values[SETTLED:])
-            print(f"  {what} {mean:.1f} ± {error:.1f} {unit}, from exchange {reached(values)} on")
+            print(f"  {label} {mean:.1f} ± {error:.1f} {unit}, from exchange {reached(values)} on")
         for axis, values in zip(axes, (between, flow), strict=True):
             axis.plot(np.arange(1, len(values) + 1), values, "o-", label=Path(name).name)
             axis.axhline(values[SETTLED:].mean(), color="k", linewidth=0.6)

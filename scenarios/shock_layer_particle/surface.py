@@ -152,7 +152,7 @@ def _map(panel: Axes, run: Run, values: Array, undisturbed: Array | None) -> Non
 def tell(run: Run, alone: Run | None) -> str:
     """Say what the README says of a run."""
     after = run.times >= run.launch + SETTLED
-    said = [f"{run.name}: farthest {np.round(-run.places.min(axis=0), 3).tolist()} R"]
+    lines = [f"{run.name}: farthest {np.round(-run.places.min(axis=0), 3).tolist()} R"]
     pairs = [("pressure over Rayleigh's", run.pressure, 1.0)]
     if run.heat is not None:
         pairs.append(("heat flux over Fay and Riddell's", run.heat, 1.0))
@@ -163,7 +163,7 @@ def tell(run: Run, alone: Run | None) -> str:
     for name, values, rest in pairs:
         height, angle = ring(run.angle, values)
         best = np.flatnonzero(after)[height[after].argmax()]
-        said.append(
+        lines.append(
             f"  largest {name}: {height[best] / rest:.2f} at {angle[best]:.0f} degrees, "
             f"t = {run.times[best]:.2f} s, particle at {-run.places[best, 0]:.2f} R; "
             f"outermost at {angle[after].max():.0f} degrees"
@@ -171,7 +171,7 @@ def tell(run: Run, alone: Run | None) -> str:
     if run.places.shape[1] > 1:
         flight = run.times > run.last_launch + BEGUN
         speeds = np.gradient(run.places, run.times, axis=0)[-3]
-        said.append(
+        lines.append(
             f"  at t = {run.times[-1]:.2f} s at {np.round(-run.places[-1], 2).tolist()} R with "
             f"{np.round(speeds, 3).tolist()} m/s; mean force since both fly "
             f"{np.round(run.forces[flight].mean(axis=0), 3).tolist()} N"
@@ -179,12 +179,12 @@ def tell(run: Run, alone: Run | None) -> str:
     if run.heat is not None:
         height, angle = ring(run.angle, run.heat)
         rows = [run.at(time) for time in np.arange(run.launch + STEP, run.times[-1], STEP)]
-        said += [
+        lines += [
             f"  t = {run.times[k]:.2f} s, particle at {-run.places[k, 0]:.2f} R: ring of "
             f"{height[k]:.2f} of Fay and Riddell's at {angle[k]:.0f} degrees"
             for k in rows
         ]
-    return "\n".join(said)
+    return "\n".join(lines)
 
 
 def main() -> None:

@@ -56,8 +56,8 @@ def main(folders: list[str]) -> None:
             panel.annotate("uncertainty of 0.1465", place, (0, 2), textcoords="offset points")
         panel.margins(x=0.3)
         panel.xaxis.set_minor_formatter(NullFormatter())
-        what = "mean error of the density [kg/m3]" if is_tube else "error of the stand-off"
-        panel.set(xlabel="processor time [s]", ylabel=what, title=study["scene"])
+        axis_label = "mean error of the density [kg/m3]" if is_tube else "error of the stand-off"
+        panel.set(xlabel="processor time [s]", ylabel=axis_label, title=study["scene"])
     out = Path(folders[0]) / "precision.png"
     figure.savefig(out, dpi=110)
     print(f"drawn in {out}")
