@@ -103,7 +103,7 @@ def read(
     ----------
     params : type
         Made by `parameters`.
-    given : dict
+    table : dict
         The settings, as they stand in a scene.
     where : str
         What the settings are called in sentences.

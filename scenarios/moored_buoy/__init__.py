@@ -1,0 +1,1 @@
+"""A buoy on three chains, against another program."""
