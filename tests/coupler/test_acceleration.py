@@ -267,11 +267,11 @@ for kind in ("constant", "aitken", "iqn-ils"):
         guess = {key: np.full(24_000, 0.1 * window)}
         acceleration.begin_window(0.5)
         for _ in range(8):
-            found = {key: push + slope * guess[key] + 0.1 * curve * np.roll(guess[key], 1)}
-            residuals = measure.compare(guess, found, 0.5)
-            guess = acceleration.next(guess, found, allowed(residuals))
+            outputs = {key: push + slope * guess[key] + 0.1 * curve * np.roll(guess[key], 1)}
+            residuals = measure.compare(guess, outputs, 0.5)
+            guess = acceleration.next(guess, outputs, allowed(residuals))
             seen.update(guess[key].tobytes() + repr(residuals).encode())
-        acceleration.end_window(guess, found)
+        acceleration.end_window(guess, outputs)
     for array in acceleration.save().values():
         seen.update(array.tobytes())
 print(seen.hexdigest())

@@ -34,8 +34,8 @@ for window in range(count):
     part.start(1.0, {"passed.value": value}, ["passed.value"])
     if window == count // 2:
         time.sleep(8.0)  # the answer lies there for longer than a silent component may take
-    found = part.finish().fields["returned.value"]
-    assert (found == window + 0.5).all() or (found == window + 1.0).all(), window
+    returned = part.finish().fields["returned.value"]
+    assert (returned == window + 0.5).all() or (found == window + 1.0).all(), window
 threads = [thread.name for thread in threading.enumerate() if thread.daemon]
 connection.close(True)
 assert threads == ["watchdog"], threads  # one of a library may abort the process as Python ends

@@ -31,7 +31,7 @@ def end_window(self, coupling):
     if coupling.windows.done in (1000, 1000 + WINDOWS):
         gc.collect()
         ctypes.CDLL(None).malloc_trim(0)
-        pids = [os.getpid(), *(one.pid for one in psutil.Process().children())]
+        pids = [os.getpid(), *(process.pid for process in psutil.Process().children())]
         print("HELD", *map(held, pids), flush=True)
 OutputWriter.end_window = end_window
 sys.argv = ["quintet", "run", sys.argv[1], "--out", sys.argv[2]]

@@ -44,10 +44,10 @@ class Stirred(SphFluid):
         motion[: self.state.fluid, 1] = params.stirring * place[: self.state.fluid, 0]
 
     def give(self, wanted):
-        found = dict(super().give(wanted - {KEY}))
+        fields = dict(super().give(wanted - {KEY}))
         if KEY in wanted:
-            found[KEY] = self.totals().angular_momentum[np.newaxis]
-        return found
+            fields[KEY] = self.totals().angular_momentum[np.newaxis]
+        return fields
 '''
 SCENE = """
 name = "stirred"
