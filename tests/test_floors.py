@@ -23,7 +23,7 @@ STOREYS = [
 ]
 
 ABOVE_COMPONENT = {"analysis", "opencl"}  # sub-folders and files that drive the whole solver
-VAGUE = {"one", "found", "given", "made", "said", "kept", "own"}
+VAGUE = {"one", "found", "given", "made", "kept", "own"}
 
 
 def dotted(path):

@@ -47,15 +47,15 @@ def refuse_misplaced(body: Array, position: Array, slack: float, room: Room) -> 
     room : Room
     """
     wrong: dict[float, str] = {}
-    for boxes, sentences in ((room.water, OUTSIDE_WATER), (room.obstacles, OUTSIDE_OBSTACLES)):
+    for boxes, texts in ((room.water, OUTSIDE_WATER), (room.obstacles, OUTSIDE_OBSTACLES)):
         for number, corners in enumerate(boxes):
             low, high = (np.array(corner) for corner in corners)
             depth = np.minimum(position - low, high - position)[:, room.axes].min(axis=1)
             for k in _deepest(body, depth, slack):
                 wrong.setdefault(
                     body[k],
-                    f"{sentences[0]}; its sample at {_place(position[k])} is {depth[k]:.3g} m inside "
-                    f"box {number} of it, {_extent(low, high, room.axes)}. {sentences[1]}",
+                    f"{texts[0]}; its sample at {_place(position[k])} is {depth[k]:.3g} m inside "
+                    f"box {number} of it, {_extent(low, high, room.axes)}. {texts[1]}",
                 )
     if room.tank is not None:
         _find_outside(wrong, body, position, slack, room.tank, room)
