@@ -1,8 +1,8 @@
 """Mooring lines: elastic cables between anchors and floating bodies, at rest in still water.
 
 A line of length L, stiffness EA and weight w per length in water hangs as an elastic catenary
-between its anchor and its fairlead, the point where it is made fast to the body. With H and V the
-horizontal and vertical pull of the line on its anchor's side of the fairlead, V_a = V - w L,
+between its anchor and its fairlead, the point where it is made fast to the body. H and V are the
+horizontal and the vertical pull at the fairlead, V_a = V - w L that at the anchor:
 
     x = H/w (asinh(V/H) - asinh(V_a/H)) + H L/EA
     z = 1/w (√(H² + V²) - √(H² + V_a²)) + (V² - V_a²)/(2 w EA)

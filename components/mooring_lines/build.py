@@ -20,11 +20,13 @@ def lines_of(entries: Sequence[Line]) -> Lines:
     )
 
 
-def first_state(lines: int, bodies: int) -> State:
+def first_state(entries: Sequence[Line], bodies: int) -> State:
     """State of lines before it is known where the bodies are."""
+    lines = len(entries)
     orientation = np.zeros((bodies, 4))
     orientation[:, 0] = 1.0
     return State(
+        fairlead=np.array([line.fairlead for line in entries], float),
         arm=np.zeros((lines, 3)),
         position=np.zeros((bodies, 3)),
         velocity=np.zeros((bodies, 3)),

@@ -36,26 +36,27 @@ class MooringLines(Component):
     def __init__(self, params: MooringLinesParams) -> None:
         self.params, (self.takes, self.gives) = params, self.ports_of(params)
         self.lines = lines_of(params.lines)
-        self.state = first_state(len(params.lines), 0)
+        self.state = first_state(params.lines, 0)
+        self.mass = np.ones(0)  # kg, of the bodies
         self.begun = False  # whether the state is that of another run
 
     def bind(self, static: Fields, joined: Keys) -> None:
         """Make room for the bodies that links bring."""
-        bodies = 1 + int(self.lines.body.max())
+        features.refuse_half_links(joined)
+        self.mass = np.full(1 + int(self.lines.body.max()), math.inf)
         if "motion.mass" in static:
-            bodies = len(static["motion.mass"])
-            features.refuse_missing_bodies(self.params, bodies)
-        self.state = first_state(len(self.params.lines), bodies)
+            self.mass = np.array(static["motion.mass"])
+            features.refuse_missing_bodies(self.params, len(self.mass))
+        self.state = first_state(self.params.lines, len(self.mass))
 
     def prime(self, fields: Fields) -> None:
         """Make the lines fast to the bodies, where these are as the run begins."""
         self.take(fields)
         if not self.begun:
             body, state = self.lines.body, self.state
-            arm = np.array([line.fairlead for line in self.params.lines]) - state.position[body]
+            arm = state.fairlead - state.position[body]
             inverse = rotation.matrix(rotation.conjugate(state.orientation))[body]
             state.arm[:] = np.einsum("kij,kj->ki", inverse, arm)
-        features.refuse_sunken_fairleads(self.params, self._fairleads(0.0))
 
     def _fairleads(self, time: float) -> Array:
         """Where the fairleads (k, 3) m are, a time [s] after the motion that is known."""
@@ -86,8 +87,8 @@ class MooringLines(Component):
             raise diagnostics.failure(wrong, fairlead, self.lines, state)
 
     def _read(self) -> tuple[float, Array]:
-        """Energy [J] of the lines at the step's end, and what the gauge gives (k, 3)."""
-        gauge = np.zeros((len(self.lines.length), 3))
+        """Energy [J] of the lines at the step's end, and what `read_lines` reads of each (k, 4)."""
+        gauge = np.zeros((len(self.lines.length), 4))
         fairlead = self._fairleads(0.5 * self.state.clock[1])
         return read_lines(fairlead, self.lines, self.state.pull.copy(), gauge), gauge
 
@@ -97,7 +98,7 @@ class MooringLines(Component):
         fields = {"load.force": load[:, :3].copy(), "load.torque": load[:, 3:].copy()}
         if not wanted.isdisjoint(GAUGES):
             _, gauge = self._read()
-            fields |= {key: column.copy() for key, column in zip(GAUGES, gauge.T, strict=True)}
+            fields |= {key: gauge[:, column].copy() for column, key in enumerate(GAUGES)}
         return {key: array for key, array in fields.items() if key in wanted}
 
     def save(self) -> Fields:
@@ -110,6 +111,7 @@ class MooringLines(Component):
 
     def begin_from(self, state: Fields) -> None:
         """Begin from the state of another run: lines stay fast where they were."""
+        features.refuse_other_lines(self.state, state)
         self.load(state)
         self.state.clock[:] = 0.0
         self.begun = True
@@ -119,8 +121,14 @@ class MooringLines(Component):
         return diagnostics.totals(self._read()[0])
 
     def warnings(self) -> dict[str, str]:
-        """Warn of lines that are stretched too far."""
-        return diagnostics.warnings(self._read()[1][:, 0], self.lines)
+        """Warn of lines that are stretched too far, and of windows that are too long."""
+        return diagnostics.warnings(
+            self._read()[1], self.lines, self.mass, float(self.state.clock[1])
+        )
+
+    def notes(self) -> tuple[str, ...]:
+        """Which body each line holds."""
+        return diagnostics.notes(self.lines, self.state)
 
     def view(self) -> Fields:
         """Points along all lines."""

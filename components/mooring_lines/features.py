@@ -3,7 +3,8 @@
 import numpy as np
 
 from quintet.components.mooring_lines.params import MooringLinesParams
-from quintet.interfaces.component import Array
+from quintet.components.mooring_lines.state import State
+from quintet.interfaces.component import Fields, Keys
 from quintet.interfaces.errors import SceneError
 
 
@@ -20,14 +21,30 @@ def refuse_missing_bodies(params: MooringLinesParams, bodies: int) -> None:
         )
 
 
-def refuse_sunken_fairleads(params: MooringLinesParams, fairlead: Array) -> None:
-    """Refuse lines on a bed whose fairleads begin below it."""
-    height = fairlead[:, 2] - np.array([line.anchor[2] for line in params.lines])
-    sentences = [
-        f"lines.{k}: the fairlead must not be below the bed, on which the anchor stands; found it "
-        f"{-rise:g} m below. Correct it, or set on_bed = false."
-        for k, (line, rise) in enumerate(zip(params.lines, height.tolist(), strict=True))
-        if line.weight > 0.0 and line.on_bed and rise < 0.0
-    ]
-    if sentences:
-        raise SceneError(sentences)
+def refuse_half_links(joined: Keys) -> None:
+    """Refuse links that bring the motion of bodies and take no load, or the other way round."""
+    ports = {"motion", "load"}
+    if joined and not ports <= joined:
+        (lacking,) = ports - joined
+        raise SceneError(
+            f"links must join both motion and load of mooring lines; {lacking} has no partner. Add "
+            "a pair for it to the link."
+        )
+
+
+def refuse_other_lines(state: State, saved: Fields) -> None:
+    """Refuse a state of other lines or bodies: lines stay fast where they were."""
+    for name, what in (("fairlead", "lines"), ("position", "bodies")):
+        before, now = len(saved[name]), len(getattr(state, name))
+        if before != now:
+            raise SceneError(
+                f"the state that it begins from must be of its {now} {what}; found {before}. Make "
+                "both scenes alike, or leave it out of begin_from.components."
+            )
+    moved = np.abs(saved["fairlead"] - state.fairlead).max(axis=1)
+    if moved.any():
+        raise SceneError(
+            f"lines.{int(moved.argmax())}.fairlead must be that of the run from which it begins; "
+            f"found it {moved.max():g} m away. Correct it, or leave the lines out of "
+            "begin_from.components."
+        )

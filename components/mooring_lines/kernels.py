@@ -11,12 +11,20 @@ from quintet.components.mooring_lines.laws import (
     lowest_pull,
     lying_length,
     place_along,
+    steepest,
     straight_pull,
 )
+from quintet.components.mooring_lines.params import BELOW
 from quintet.components.mooring_lines.state import Array, Lines
 from quintet.components.shared.numba_options import EXACT
 
 ALLOWED = 1e-8  # of a line's length, by which its end may miss the fairlead
+
+
+@njit(**EXACT)
+def height_of(cable: Cable, rise: float) -> float:
+    """Height [m] of a fairlead above its anchor; one that has sunk lies on the bed."""
+    return max(rise, 0.0) if cable.has_bed else rise
 
 
 @njit(**EXACT)
@@ -28,13 +36,12 @@ def pull_of(k: int, fairlead: Array, lines: Lines, pull: Array) -> tuple[float, 
         distance = math.hypot(level, dz)
         tension = straight_pull(distance, lines.length[k], lines.stiffness[k])
         share = tension / distance if tension > 0.0 else 0.0
-        return share * level, share * dz, True
+        return share * level, share * dz, math.isfinite(distance)
     cable = Cable(lines.length[k], lines.stiffness[k], lines.weight[k], lines.has_bed[k])
-    if cable.has_bed and dz < 0.0:
-        return 0.0, 0.0, False
-    hanging = hanging_pull(cable, level, dz, pull[k, 0], pull[k, 1])
+    is_sunken = cable.has_bed and dz < -BELOW * cable.length
+    hanging = hanging_pull(cable, level, height_of(cable, dz), pull[k, 0], pull[k, 1])
     pull[k, 0], pull[k, 1] = hanging.horizontal, hanging.vertical
-    return hanging.horizontal, hanging.vertical, hanging.misses < ALLOWED
+    return hanging.horizontal, hanging.vertical, hanging.misses < ALLOWED and not is_sunken
 
 
 @njit(**EXACT)
@@ -78,12 +85,16 @@ def add_loads(fairlead: Array, centre: Array, lines: Lines, pull: Array, load: A
 
 @njit(**EXACT)
 def read_lines(fairlead: Array, lines: Lines, pull: Array, gauge: Array) -> float:
-    """Read all lines: their energy [J], and into `gauge` (k, 3) what the gauge gives of each."""
+    """Read all lines: their energy [J], and into `gauge` (k, 4) tensions, length and stiffness.
+
+    Tension at the fairlead and at the anchor [N], length on the bed [m], greatest stiffness [N/m].
+    """
     total = 0.0
     for k in range(len(fairlead)):
         h, v, _ = pull_of(k, fairlead, lines, pull)
         tension = math.hypot(h, v)
         gauge[k, 0], gauge[k, 1], gauge[k, 2] = tension, tension, 0.0
+        gauge[k, 3] = lines.stiffness[k] / lines.length[k] if tension > 0.0 else 0.0
         if lines.weight[k] == 0.0:
             total += 0.5 * tension * tension * lines.length[k] / lines.stiffness[k]
             continue
@@ -91,7 +102,8 @@ def read_lines(fairlead: Array, lines: Lines, pull: Array, gauge: Array) -> floa
         dx, dy, dz = fairlead[k] - lines.anchor[k]
         gauge[k, 1] = math.hypot(h, lowest_pull(cable, v))
         gauge[k, 2] = lying_length(cable, v)
-        total += energy(cable, h, v, math.hypot(dx, dy), dz)
+        gauge[k, 3] = steepest(cable, h, v)
+        total += energy(cable, h, v, math.hypot(dx, dy), height_of(cable, dz))
     return total
 
 

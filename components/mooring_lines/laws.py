@@ -15,6 +15,7 @@ STEPS = 100  # of Newton's method; usually 3 to 10
 ENOUGH = 1e-13  # of a line's length, by which its end may miss the fairlead
 SLACK = 1e-9  # of a line's weight: the least horizontal pull that is computed
 HALVINGS = 60  # of one of these steps
+ROUNDING = 1e-12  # of energies
 
 
 class Cable(NamedTuple):
@@ -101,12 +102,28 @@ def compliance(cable: Cable, h: float, v: float) -> tuple[float, float, float]:
 
 
 @njit(**EXACT)
+def steepest(cable: Cable, h: float, v: float) -> float:
+    """Greatest stiffness [N/m] of a hanging line at its fairlead, in any direction."""
+    along, across, up = compliance(cable, h, v)
+    determinant = along * up - across * across
+    if determinant <= 0.0:
+        return cable.stiffness / cable.length
+    half = 0.5 * (along + up)
+    least = determinant / (half + math.sqrt(max(half * half - determinant, 0.0)))
+    return 1.0 / least
+
+
+@njit(**EXACT)
 def stored(cable: Cable, h: float, v: float) -> float:
     """U*(H, V) [J], whose derivatives are x and z."""
     w, low, lying = cable.weight, lowest_pull(cable, v), lying_length(cable, v)
     hung = w * (cable.length - lying)
     upper, lower = math.hypot(h, v), math.hypot(h, low)
-    arc = v * upper - low * lower + h * h * asinh_rise(h, v, low, hung)
+    arc = h * h * asinh_rise(h, v, low, hung)
+    if v * low > 0.0:  # v upper - low lower, to rounding
+        arc += hung * (v + low) * (h * h + v * v + low * low) / (v * upper + low * lower)
+    else:
+        arc += v * upper - low * lower
     squares = hung * (h * h + (v * v + v * low + low * low) / 3.0)
     lies = lying * (h + h * h / (2.0 * cable.stiffness))
     return arc / (2.0 * w) + squares / (2.0 * w * cable.stiffness) + lies
@@ -145,9 +162,9 @@ def first_guess(cable: Cable, x: float, z: float) -> tuple[float, float]:
 def gap_of(
     cable: Cable, h: float, v: float, x: float, z: float, is_least: bool
 ) -> tuple[tuple[float, float], bool]:
-    """Gap [m] from a line's end to its fairlead, and whether the line is slack, with a heap."""
+    """Gap [m] from a line's end to its fairlead, and whether the line is slack: H is 0 then."""
     end_x, end_z = end_of(cable, h, v)
-    is_slack = cable.has_bed and is_least and end_x >= x
+    is_slack = is_least and end_x >= x
     return (0.0 if is_slack else x - end_x, z - end_z), is_slack
 
 
@@ -177,7 +194,7 @@ def hanging_pull(cable: Cable, x: float, z: float, guess_h: float, guess_v: floa
     """Pull of a line whose fairlead is at (x, z) [m] beside and above its anchor.
 
     Newton's method on the convex U* - x H - z V, each step halved until that falls. The rest of a
-    slack line lies in a heap on the bed, and its horizontal pull is 0.
+    slack line lies in a heap on the bed, or hangs straight down; its horizontal pull is 0.
 
     Parameters
     ----------
@@ -210,7 +227,8 @@ def hanging_pull(cable: Cable, x: float, z: float, guess_h: float, guess_v: floa
             gap, is_slack = gap_of(cable, new_h, new_v, x, z, new_h <= least)
             new_misses = math.hypot(gap[0], gap[1]) / length
             # At the end levels differ by rounding alone.
-            is_better = new_level < level or new_misses < misses
+            noise = ROUNDING * (abs(x * h) + abs(z * v) + abs(level))
+            is_better = new_level < level or (new_misses < misses and new_level < level + noise)
             if is_better:
                 break
             dh, dv = 0.5 * dh, 0.5 * dv

@@ -6,6 +6,8 @@ from pydantic import Field
 
 from quintet.interfaces.params import NotNegative, Positive, Vector, parameters
 
+BELOW = 1e-6  # of a line's length, by which its fairlead may be below the bed
+
 
 @parameters
 class Line:
@@ -16,15 +18,16 @@ class Line:
     anchor : m
         Its fixed end.
     fairlead : m
-        Where it is made fast to the body, as the run begins.
+        Where it is made fast to the body, as the run begins, in the world.
     body : 1
-        Number of the body among those that the link brings, from 0.
+        Number of the body, from 0; the bodies of several links follow one another in the order of
+        the links.
     length : m
-        Without pull.
+        Unstretched.
     stiffness : N
         EA, pull over strain: Young's modulus times the area of the section.
     weight : N/m
-        Of a length, less that of the water in its place. A line without weight is straight.
+        Per unstretched length, in water. A line without weight is straight.
     on_bed
         Whether a line with weight may lie on a level bed at the height of its anchor. If not, it
         may hang below its anchor.
@@ -38,6 +41,14 @@ class Line:
     stiffness: Positive
     weight: NotNegative = 0.0
     on_bed: bool = True
+
+    def __post_init__(self) -> None:
+        rise = self.fairlead[2] - self.anchor[2]
+        if self.weight > 0.0 and self.on_bed and rise < -BELOW * self.length:
+            raise ValueError(
+                "line: its fairlead must not be below the bed, on which its anchor stands; found "
+                f"it {-rise:g} m below. Correct it, or set on_bed = false."
+            )
 
 
 @parameters

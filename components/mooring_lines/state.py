@@ -22,6 +22,7 @@ class Lines(NamedTuple):
 class State(NamedTuple):
     """All that is remembered, of k lines and b bodies."""
 
+    fairlead: Array  # (k, 3) m, as the run began, in the world
     arm: Array  # (k, 3) m, from a body's centre of mass to the fairlead, in the axes of the body
     position: Array  # (b, 3) m, of centres of mass in the middle of the last step
     velocity: Array  # (b, 3) m/s

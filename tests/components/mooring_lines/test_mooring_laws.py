@@ -27,7 +27,8 @@ def random_lines(count, seed=3):
         stiffness = weight * length * 10.0 ** random.uniform(0.3, 6)
         has_bed = bool(random.random() < 0.5)
         z = length * random.uniform(0.0 if has_bed else -1.0, 1.0)
-        yield Cable(length, stiffness, weight, has_bed), length * random.uniform(0.0, 1.2), z
+        x = random.choice([0.0, 1e-7, random.uniform(0.0, 1.2)], p=[0.05, 0.05, 0.9])
+        yield Cable(length, stiffness, weight, has_bed), x * length, z
 
 
 def test_lines_end_at_their_fairleads():
@@ -37,10 +38,10 @@ def test_lines_end_at_their_fairleads():
         assert pull.misses < 1e-12, (cable, x, z)
         end_x, end_z = end_of(cable, pull.horizontal, pull.vertical)
         assert end_z == pytest.approx(z, abs=2e-13 * cable.length)
-        # The rest of a slack line lies in a heap.
+        # The rest of a slack line lies in a heap, or hangs straight down.
         least = SLACK * cable.weight * cable.length
         is_slack = end_x > x + 1e-6 * cable.length
-        assert not is_slack or (cable.has_bed and pull.horizontal < 1.1 * least)
+        assert not is_slack or pull.horizontal < 1.1 * least
         slack += is_slack
     assert 100 < slack < 1000
 
@@ -103,7 +104,26 @@ def test_a_light_line_pulls_like_a_straight_one():
 def test_a_search_from_the_pull_a_moment_ago_finds_the_same():
     for cable, x, z in random_lines(500, seed=5):
         first = hanging_pull(cable, x, z, *UNKNOWN)
-        other = hanging_pull(cable, 0.9 * x, 0.9 * z, *UNKNOWN)
-        again = hanging_pull(cable, x, z, other.horizontal, other.vertical)
         size = math.hypot(*first[:2])
-        assert again[:2] == pytest.approx(first[:2], abs=1e-6 * size)
+        for share in (0.9, 0.3, 1.6):
+            other = hanging_pull(cable, share * x, share * z, *UNKNOWN)
+            again = hanging_pull(cable, x, z, other.horizontal, other.vertical)
+            assert again.misses < 1e-12, (cable, x, z, share)
+            assert again[:2] == pytest.approx(first[:2], abs=1e-6 * size)
+
+
+def test_a_slack_line_hangs_straight_down():
+    """Half of what is longer than the way hangs at each end: V = w (L + z) / 2."""
+    for rise in (-6.0, 0.0, 5.0, 9.9):
+        pull = hanging_pull(Cable(10.0, 1e9, 50.0, False), 0.0, rise, *UNKNOWN)
+        assert pull.misses < 1e-12
+        assert pull.vertical == pytest.approx(25.0 * (10.0 + rise), abs=1e-3)
+
+
+def test_the_energy_of_a_light_taut_line_is_that_of_its_stretch():
+    for weight in (1e-6, 1e-9, 1e-12):
+        cable = Cable(10.0, 1e6, weight, False)
+        pull = hanging_pull(cable, 9.0, 5.0, *UNKNOWN)
+        stretch = math.hypot(9.0, 5.0) - 10.0
+        stored_energy = energy(cable, *pull[:2], 9.0, 5.0)
+        assert stored_energy == pytest.approx(0.5 * 1e6 / 10.0 * stretch**2, rel=1e-6)
