@@ -14,8 +14,7 @@ from quintet.components.mooring_lines.laws import (
     steepest,
     straight_pull,
 )
-from quintet.components.mooring_lines.params import BELOW
-from quintet.components.mooring_lines.state import Array, Lines
+from quintet.components.mooring_lines.state import BELOW, Array, Lines
 from quintet.components.shared.numba_options import EXACT
 
 ALLOWED = 1e-8  # of a line's length, by which its end may miss the fairlead

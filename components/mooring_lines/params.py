@@ -4,9 +4,8 @@ from typing import Annotated, ClassVar
 
 from pydantic import Field
 
+from quintet.components.mooring_lines.state import BELOW
 from quintet.interfaces.params import NotNegative, Positive, Vector, parameters
-
-BELOW = 1e-6  # of a line's length, by which its fairlead may be below the bed
 
 
 @parameters

@@ -7,6 +7,8 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
+BELOW = 1e-6  # of a line's length, by which its fairlead may be below the bed
+
 
 class Lines(NamedTuple):
     """What never changes, of k lines."""

@@ -142,7 +142,9 @@ def test_a_motion_that_is_not_finite_is_told():
 
 def test_a_start_from_other_lines_is_refused():
     saved = lines_of(STRAIGHT).save()
-    with pytest.raises(SceneError, match=r"must be of its 2 lines; found 1. Make both scenes alike"):
+    with pytest.raises(
+        SceneError, match=r"must be of its 2 lines; found 1. Make both scenes alike"
+    ):
         lines_of(STRAIGHT, STRAIGHT).begin_from(saved)
     with pytest.raises(SceneError, match="must be of its 2 bodies; found 1"):
         component = MooringLines(read(MooringLinesParams, {"lines": [STRAIGHT]}, "chains")[0])
