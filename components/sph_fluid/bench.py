@@ -48,12 +48,14 @@ def cases() -> tuple[BenchCase, ...]:
     # Loads pyopencl where it is installed; benchmarks alone ask for it.
     from quintet.components.shared.opencl.devices import is_any_there
 
+    none: tuple[Fields, Fields] = {}, {}
     on_devices = (
-        BenchCase(f"{name}, OpenCL", params, 10, 200, UNIT, device="opencl")
-        for name, params in (
-            ("dam break", dam),
-            ("dam break, 22k", small),
-            ("dam break, float32", dam | {"precision": "float32"}),
+        BenchCase(f"{name}, OpenCL", params, 10, 200, UNIT, *fields, device="opencl")
+        for name, params, fields in (
+            ("dam break", dam, none),
+            ("dam break, 22k", small, none),
+            ("dam break, float32", dam | {"precision": "float32"}, none),
+            ("dam break, coupled", dam | {"fluid": NOTCHED}, cube()),
         )
         if is_any_there()
     )

@@ -7,7 +7,7 @@ import numpy as np
 
 from quintet.components.shared.threads import Team
 from quintet.components.sph_fluid import MANIFEST, build, diagnostics, features, judgement
-from quintet.components.sph_fluid.boundary.method import Films, NoFilms
+from quintet.components.sph_fluid.boundary.method import Films, MakeFilmRows, NoFilms
 from quintet.components.sph_fluid.boundary.planar import in_plane, require_one_metre
 from quintet.components.sph_fluid.boundary.samples import Samples
 from quintet.components.sph_fluid.constants import constants
@@ -28,7 +28,6 @@ from quintet.interfaces.component import (
     Resources,
     Totals,
 )
-from quintet.interfaces.errors import OrderError
 from quintet.interfaces.faces import polygons
 
 LOADS = frozenset({"surface_load.force"})
@@ -72,6 +71,7 @@ class SphFluid(Component):
         self.integration = features.integration(params)
         self.courant = features.courant_limit(params)
         self.films: Films = NoFilms()  # before there are surfaces
+        self.make_film_rows: MakeFilmRows | None = None  # a device has its own
         self.filter = features.shepard_filter(params)
         self.gauges = features.gauges(params, self.symmetry, self.all_ranks, self.frame)
 
@@ -90,7 +90,8 @@ class SphFluid(Component):
             self.all_ranks.join(static)
             self.samples.join(self.state, static, self.params.density)
             self.boundary.join(self.state, static)
-            self.films = features.lubrication_films(self.params, self.samples, self.all_ranks)
+            parts = (self.samples, self.all_ranks, self.make_film_rows)
+            self.films = features.lubrication_films(self.params, *parts)
             self.films.join(self.state, static)
             self.pistons.start(self.state, self.boundary)
 
@@ -134,8 +135,7 @@ class SphFluid(Component):
 
     def step(self, dt: float) -> None:
         """Advance by dt [s]."""
-        if not self.samples.placed:
-            raise OrderError("step: surface samples must be placed first. Call take before it.")
+        self.samples.require_placed()
         self.all_ranks.begin_step()
         self.pistons.place(self.state, self.boundary, dt)
         if self.lists.need_rebuild(self.state, self.boundary, dt):

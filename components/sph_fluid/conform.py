@@ -101,7 +101,7 @@ def cases() -> tuple[ConformCase, ...]:
 
 
 def on_devices() -> tuple[ConformCase, ...]:
-    """Two kinds of walls on a device, where there is one."""
+    """Two kinds of walls on a device, where there is one, each alone and with samples."""
     # Loads pyopencl where it is installed; these cases alone ask for it.
     from quintet.components.shared.opencl.devices import is_any_there
 
@@ -111,14 +111,23 @@ def on_devices() -> tuple[ConformCase, ...]:
     mirrored = DROP | MIRRORED | {"boundary": walls | {"method": "mdbc"}, "gauges": GAUGES}
     dynamic = DROP | {"boundary": walls | {"method": "dbc"}}
     tables = {"mirrored": mirrored, "dynamic": dynamic}
-    return tuple(
+    walls_alone = (
         ConformCase(f"drop between {name} walls, OpenCL", table, dt=1e-4, device="opencl")
         for name, table in tables.items()
+    )
+    return (
+        *walls_alone,
+        _case("drop, OpenCL", DROP, device="opencl"),
+        _case("drop, mirrored walls and films, OpenCL", DROP | MIRRORED, True, device="opencl"),
     )
 
 
 def _case(
-    name: str, params: dict[str, Any], mirror: bool = False, volume: float = 1.25e-4
+    name: str,
+    params: dict[str, Any],
+    mirror: bool = False,
+    volume: float = 1.25e-4,
+    device: str = "cpu",
 ) -> ConformCase:
     static: Fields = {
         "surface.normal": np.tile([0.0, 0.0, 1.0], (2, 1)),
@@ -134,4 +143,5 @@ def _case(
         scale={"surface.velocity": 1.0},
         dt=1e-4,
         forces=("surface_load.force",),
+        device=device,
     )

@@ -9,7 +9,12 @@ from typing import TYPE_CHECKING, Protocol
 
 from quintet.components.shared.search.neighbours import Lists
 from quintet.components.shared.threads import Team
-from quintet.components.sph_fluid.boundary.method import BoundaryMethod, Films, NoFilms
+from quintet.components.sph_fluid.boundary.method import (
+    BoundaryMethod,
+    Films,
+    MakeFilmRows,
+    NoFilms,
+)
 from quintet.components.sph_fluid.boundary.no_pistons import NoPistons, Pistons
 from quintet.components.sph_fluid.boundary.samples import Samples
 from quintet.components.sph_fluid.boundary.symmetry_planes import NoSymmetry, SymmetryPlanes
@@ -159,18 +164,24 @@ def open_boundaries(params: SphFluidParams) -> OpenBoundaries:
     return Flow(params)
 
 
-def lubrication_films(params: SphFluidParams, samples: Samples, ranks: Ranks) -> Films:
-    """Films in narrow gaps: from the start, where they are needed, or never."""
+def lubrication_films(
+    params: SphFluidParams, samples: Samples, ranks: Ranks, make_rows: MakeFilmRows | None = None
+) -> Films:
+    """Films in narrow gaps: from the start, where they are needed, or never.
+
+    `make_rows` makes the rows that they lie between, where those are not in the host's state.
+    """
     if (
         params.boundary.pistons and not (samples.body >= 0.0).any()
     ):  # numbers of pistons are negative
         return NoFilms()
+    make = partial(make_films, params, samples, ranks, make_rows)
     if params.boundary.lubrication_films == "auto":
         # Left out of scenes that say whether they want films.
         from quintet.components.sph_fluid.boundary.selective_films import SelectiveFilms
 
-        return SelectiveFilms(params, samples, ranks, partial(make_films, params, samples, ranks))
-    return make_films(params, samples, ranks) if params.boundary.lubrication_films else NoFilms()
+        return SelectiveFilms(params, samples, ranks, make)
+    return make() if params.boundary.lubrication_films else NoFilms()
 
 
 def refuse_misplaced(params: SphFluidParams, body: Array, position: Array) -> None:
@@ -199,12 +210,14 @@ def remove_inside_bodies(
     return remove(state, samples, position, params)
 
 
-def make_films(params: SphFluidParams, samples: Samples, ranks: Ranks) -> "LubricationFilms":
+def make_films(
+    params: SphFluidParams, samples: Samples, ranks: Ranks, make_rows: MakeFilmRows | None
+) -> "LubricationFilms":
     """Films in narrow gaps."""
     # Left out of scenes without films.
     from quintet.components.sph_fluid.boundary.lubrication import LubricationFilms
 
-    return LubricationFilms(params, samples, ranks)
+    return LubricationFilms(params, samples, ranks, make_rows)
 
 
 def pressure_parts(params: SphFluidParams, boundary: BoundaryMethod) -> list[PressurePart]:

@@ -46,11 +46,14 @@ class DeviceArray:
             whole = np.ascontiguousarray(array, self.dtype)
             opencl().enqueue_copy(self.queue, self.memory, whole, is_blocking=True)
 
-    def get(self) -> NDArray[Any]:
-        """Read the array."""
-        array: NDArray[Any] = np.empty(self.shape, self.dtype)
+    def get(self, first: int = 0) -> NDArray[Any]:
+        """Read the rows of the array, from the first one on."""
+        array: NDArray[Any] = np.empty((self.shape[0] - first, *self.shape[1:]), self.dtype)
         if array.size:
-            opencl().enqueue_copy(self.queue, array, self.memory, is_blocking=True)
+            offset = first * (array.nbytes // array.shape[0])
+            opencl().enqueue_copy(
+                self.queue, array, self.memory, src_offset=offset, is_blocking=True
+            )
         return array
 
 

@@ -84,8 +84,8 @@ __kernel void search(
 {
     const int i = get_global_id(0);
     if (i >= count) return;
-    double4 r = position[i];
-    if (i >= split && look) r.xyz = vload3(i - split, look);
+    const double4 r =
+        i >= split && look ? (double4)(vload3(i - split, look), 0) : position[i];
     const double along[3] = {r.x, r.y, r.z};
     const long cell = cell_of(along[grid.first], along[grid.second], along[grid.third], grid);
     int found = 0;

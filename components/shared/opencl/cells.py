@@ -96,11 +96,13 @@ class Cells:
         Parameters
         ----------
         position : (n, 4) array, m
-        look : (n - split, 3) array, m, or None
-            Places that look in place of rows from `split` on; these look for the first alone.
-        extremes : (n, 4) array
-            Written.
+        look : (n - split or more, 3) array, m, or None
+            Places that look in place of rows from `split` on, and lists for more places than there
+            are rows; these look for the first alone.
+        extremes : (n or more, 4) array
+            Written; it has a row for each list.
         """
+        count = max(count, split + look.shape[0]) if look else count
         middle, end = (DeviceArray(self.queue, (count,), np.int32) for _ in range(2))
         while True:
             by_rows = (self.width, 1) if self.by_rows else (1, count)

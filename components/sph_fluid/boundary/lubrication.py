@@ -36,6 +36,7 @@ from quintet.components.sph_fluid.boundary.kernels.films import (
     face_normals,
     solve_reynolds,
 )
+from quintet.components.sph_fluid.boundary.method import MakeFilmRows
 from quintet.components.sph_fluid.boundary.samples import Samples
 from quintet.components.sph_fluid.constants import constants
 from quintet.components.sph_fluid.laws import Constants
@@ -53,9 +54,15 @@ SWEEPS = 20  # over the film in each step; it starts from the last step's pressu
 class LubricationFilms:
     """The films of one fluid."""
 
-    def __init__(self, params: SphFluidParams, samples: Samples, ranks: Ranks) -> None:
+    def __init__(
+        self,
+        params: SphFluidParams,
+        samples: Samples,
+        ranks: Ranks,
+        make_rows: MakeFilmRows | None = None,
+    ) -> None:
         self.params, self.samples, self.constants = params, samples, constants(params)
-        self.ranks = ranks
+        self.ranks, self._make_rows = ranks, make_rows or FilmRows
         self.notes: list[str] = []
 
     def join(self, state: State, static: Fields) -> None:
@@ -71,7 +78,7 @@ class LubricationFilms:
             spacing = self.params.spacing
             faces = find_faces(state, self.ranks, spacing)
             self.films = find_films(faces, self.samples, spacing, self.constants)
-            self.rows = FilmRows(self.films, faces, self.ranks)
+            self.rows = self._make_rows(self.films, faces, self.ranks)
 
     def advance(self, state: State, lists: Lists, dt: float) -> None:
         """Advance the films by a step [s], and add their push to the samples' force."""

@@ -1,7 +1,7 @@
 """What a boundary method must do: how walls and surface samples act on the fluid."""
 
-from collections.abc import Sequence
-from typing import Protocol
+from collections.abc import Callable, Sequence
+from typing import Any, Protocol
 
 from quintet.components.shared.search.neighbours import Lists
 from quintet.components.shared.threads import Team
@@ -9,6 +9,8 @@ from quintet.components.sph_fluid.boundary.symmetry_planes import SymmetryPlanes
 from quintet.components.sph_fluid.laws import ContactPotential
 from quintet.components.sph_fluid.state import Array, State, Whole
 from quintet.interfaces.component import Fields
+
+MakeFilmRows = Callable[..., Any]  # of films, their faces and ranks: as `film_rows.py:FilmRows`
 
 
 class BoundaryMethod(Protocol):

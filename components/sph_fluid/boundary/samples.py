@@ -6,6 +6,7 @@ import numpy as np
 
 from quintet.components.sph_fluid.state import Array, State, Whole
 from quintet.interfaces.component import Fields
+from quintet.interfaces.errors import OrderError
 
 
 def _no_rows() -> Whole:
@@ -34,6 +35,11 @@ class Samples:
         self.volume = np.array(static["surface.volume"])
         self.placed = False
         self.find_rows(state)
+
+    def require_placed(self) -> None:
+        """Refuse a step before they are placed."""
+        if not self.placed:
+            raise OrderError("step: surface samples must be placed first. Call take before it.")
 
     def find_rows(self, state: State) -> None:
         """Find their rows again."""

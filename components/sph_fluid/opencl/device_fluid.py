@@ -2,13 +2,19 @@
 
 An `SphFluid` on the host makes the particles, and reads gauges, totals, views and snapshots: rows
 are copied into its state before. Between these a step sends four numbers from the device.
+
+Samples of bodies are placed in the host's state and copied to the device, which returns the forces
+on them. Where there are samples, the host's rows of the boundary have the order of the device's.
 """
 
 from dataclasses import replace
+from functools import partial
+
+import numpy as np
 
 from quintet.components.shared.opencl.devices import device_of
-from quintet.components.shared.search.verlet_list import slack
 from quintet.components.sph_fluid import MANIFEST, diagnostics, judgement
+from quintet.components.sph_fluid.boundary.method import NoFilms
 from quintet.components.sph_fluid.boundary.no_pistons import NoPistons
 from quintet.components.sph_fluid.boundary.symmetry_planes import NoSymmetry
 from quintet.components.sph_fluid.component import LOADS, SphFluid
@@ -18,6 +24,7 @@ from quintet.components.sph_fluid.motion.frame import StillFrame
 from quintet.components.sph_fluid.open_boundaries.method import NoOpenBoundaries
 from quintet.components.sph_fluid.opencl.refusal import refuse_what_needs_the_processor
 from quintet.components.sph_fluid.opencl.stepping import Stepping
+from quintet.components.sph_fluid.pairs.interaction import relative_volume
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.ports import SHOWS
 from quintet.components.sph_fluid.ranks.one import OneRank
@@ -30,7 +37,7 @@ FIRST_DEVICE = Resources(device="opencl")
 
 
 class DeviceFluid(Component):
-    """A weakly compressible fluid between walls that stand, on a device."""
+    """A weakly compressible fluid in a tank, and the surfaces that move in it, on a device."""
 
     Params: type[SphFluidParams] = SphFluidParams
 
@@ -51,7 +58,7 @@ class DeviceFluid(Component):
         self.host = SphFluid(params, replace(resources, device="cpu"))
         self._refuse_other_parts(resources.device)
         self.stepping = Stepping(params, device, resources.threads, self.host.lists.reach)
-        self.skin = self.host.lists.reach - self.host.lists.cutoff
+        self.host.make_film_rows = self.stepping.make_film_rows
         self._put()
 
     def _refuse_other_parts(self, device: str) -> None:
@@ -76,39 +83,58 @@ class DeviceFluid(Component):
         return self.host.describe()
 
     def bind(self, static: Fields, joined: Keys) -> None:
-        """Refuse surfaces."""
-        if "surface.volume" in static:
+        """Make room for the samples of the surfaces joined."""
+        if np.any(static.get("surface.contact", 0.0)):
             raise SceneError(
-                "on a device, a fluid must have no links to bodies; found samples of surfaces. "
-                'Remove the links, or set device = "cpu".'
+                "on a device, samples of bodies must press as walls do; found a link that chooses "
+                'the contact potential. Remove its contact, or set device = "cpu".'
             )
+        self.host.bind(static, joined)
+        self._put()
+
+    def prime(self, fields: Fields) -> None:
+        """Refuse bodies that begin out of place; remove fluid inside them, where a scene asks."""
+        if self.host.pistons.links:
+            self._get()
+            self.host.prime(fields)
+            self._put()
 
     def stable_dt(self) -> float:
         """Largest step [s], from the rates of the last one."""
         return self.host.stable_dt()
 
     def take(self, fields: Fields) -> None:
-        """Nothing to take: there are no surfaces."""
+        """Put the surface samples where they are in the coming step."""
+        if self.host.pistons.links:
+            self.host.take(fields)
+            self.stepping.rows.place(self.host.state, self.host.samples.row)
 
     def step(self, dt: float) -> None:
         """Advance by dt [s]."""
-        state = self.host.state
-        if len(state.reference) == 0 or slack(self.skin, state.moved) < 0.0:
+        host = self.host
+        host.samples.require_placed()
+        if host.lists.need_rebuild(host.state, host.boundary, dt):
             self._sort()
-            state = self.host.state
+        state = host.state
         if state.steps % judgement.EVERY == 0:
             self._get()
-            is_alone = self.params.boundary.is_still
-            totals = self.host.totals()
-            judgement.note(state, self.params, totals, is_alone, self.host.all_ranks)
-        extremes = self.stepping.step(state, dt)
+            isolated = not len(host.samples.volume) and self.params.boundary.is_still
+            judgement.note(state, self.params, host.totals(), isolated, host.all_ranks)
+        extremes = self.stepping.step(state, dt, partial(self._apply_forces, dt))
         self._is_read = False
         if extremes.failed:
             self._get()
-            raise diagnostics.failure(state, self.params, dt, self.host.all_ranks)
+            raise diagnostics.failure(state, self.params, dt, host.all_ranks)
         state.moved = extremes.moved
         state.largest_acceleration, state.largest_approach = extremes[:2]
         state.last_dt, state.steps = dt, state.steps + 1
+
+    def _apply_forces(self, dt: float) -> None:
+        """Push the samples as they pushed the fluid."""
+        host = self.host
+        if len(host.samples.row):
+            host.state.force = self.stepping.passes.push_samples()
+            host.films.advance(host.state, host.lists.arrays, dt)
 
     def _sort(self) -> None:
         """Bring near rows together and list neighbours: on the host where fluid left the tank."""
@@ -124,18 +150,29 @@ class DeviceFluid(Component):
             self._put()
         else:
             rows.sort(low, high, state)
-            self.stepping.centre(low, high)
-        self._is_read = self._is_listed = False
+            self.stepping.passes.centre(low, high)
+            self._is_read = False
+            self._follow_lists()
+
+    def _follow_lists(self) -> None:
+        """Let the host and the passes over pairs follow new lists."""
+        host, rows, self._is_listed = self.host, self.stepping.rows, False
+        host.samples.find_rows(host.state)
+        self.stepping.passes.follow(relative_volume(host.samples, host.state, self.params))
+        if not isinstance(host.films, NoFilms) and len(host.state.reference):
+            host.samples.listed = rows.listed(host.samples.row)
+            host.films.resize(host.state, rows.lengths())
 
     def _put(self) -> None:
         """Copy the host's state to the device."""
         state = self.host.state
         self.stepping.rows.put(state)
-        self.stepping.resize()
+        self.stepping.passes.resize()
         if len(state.reference):
             points = state.reference[: state.fluid]
-            self.stepping.centre(points.min(axis=0), points.max(axis=0))
-        self._is_read, self._is_listed = True, False
+            self.stepping.passes.centre(points.min(axis=0), points.max(axis=0))
+        self._is_read = True
+        self._follow_lists()
 
     def _get(self) -> None:
         """Copy the rows into the host's state, unless they are there."""
@@ -156,9 +193,7 @@ class DeviceFluid(Component):
         self.host.check()
 
     def give(self, wanted: Keys) -> Fields:
-        """Copy out what gauges read now."""
-        if not wanted:
-            return {}
+        """Copy out the mean force of the last step on each sample, and what gauges read now."""
         if not wanted <= LOADS:
             self._get()
             if not self._is_listed:
@@ -203,5 +238,5 @@ class DeviceFluid(Component):
         return self.host.walls()
 
     def items(self) -> int:
-        """Fluid and wall particles."""
+        """Fluid, wall and sample particles."""
         return self.host.items()

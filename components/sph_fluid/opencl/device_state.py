@@ -7,12 +7,18 @@ import numpy as np
 from quintet.components.shared.opencl.arrays import DeviceArray, run
 from quintet.components.shared.opencl.cells import Cells, NearLists
 from quintet.components.shared.search.cells import Grid, grid_between
+from quintet.components.shared.search.neighbours import Lists
 from quintet.components.sph_fluid.params import SphFluidParams
-from quintet.components.sph_fluid.state import State
+from quintet.components.sph_fluid.state import State, Whole
+
+# Arrays of `State` that are on the device, by the rows that they have.
+OF_ALL = ("position_density", "velocity_pressure", "previous_density_rate")
+OF_FLUID = ("identity",)
+OF_BOUNDARY = ("mirror_point", "sample")
 
 
 class DeviceState:
-    """Rows of a fluid and its walls on a device; the counters stay in the host's `State`.
+    """Rows of a fluid and its boundary on a device; the counters stay in the host's `State`.
 
     Parameters
     ----------
@@ -31,41 +37,73 @@ class DeviceState:
     ) -> None:
         self.queue, self.reach, self.mirrored = queue, reach, params.mirrored
         self.cells = Cells(queue, kernels, by_rows)
-        self._survey, self._note_places = kernels.survey, kernels.note_places
-        self._gather_fluid, self._gather_boundary = kernels.gather_fluid, kernels.gather_boundary
+        self._survey, self._gather = kernels.survey, kernels.gather
+        self._note_places, self._look_from = kernels.note_places, kernels.look_from
+        self._place = kernels.place_samples
         walls = params.boundary.tank
         low, high = walls or ((0.0,) * 3, (0.0,) * 3)
         self._walls = np.int32(walls is not None), np.array([*low, 0.0]), np.array([*high, 0.0])
 
+    @property
+    def position(self) -> DeviceArray:
+        """Positions and densities (n, 4) of all rows."""
+        return self.arrays["position_density"]
+
+    @property
+    def velocity(self) -> DeviceArray:
+        """Velocities and p/ρ² (n, 4) of all rows."""
+        return self.arrays["velocity_pressure"]
+
+    @property
+    def mirror(self) -> DeviceArray | None:
+        """Mirror points (boundary, 3) of mirrored walls and samples."""
+        return self.arrays["mirror_point"] if self.mirrored else None
+
     def put(self, state: State) -> None:
         """Copy a state to the device; lists that it has are made again."""
-        self.split, self.count = state.fluid, state.particles
-        self.position = DeviceArray.of(self.queue, state.position_density)
-        self.velocity = DeviceArray.of(self.queue, state.velocity_pressure)
-        self.previous = DeviceArray.of(self.queue, state.previous_density_rate)
-        self.identity = DeviceArray.of(self.queue, state.identity)
-        self.mirror = DeviceArray.of(self.queue, state.mirror_point)
-        self.reference = DeviceArray(self.queue, (self.count, 3))
-        self.extremes = DeviceArray(self.queue, (self.count, 4))
+        self.split, self.count, self.samples = state.fluid, state.particles, len(state.force)
+        names = (*OF_ALL, *OF_FLUID, *OF_BOUNDARY)
+        self.arrays = {name: DeviceArray.of(self.queue, getattr(state, name)) for name in names}
+        self._spare = {
+            name: DeviceArray(self.queue, array.shape, array.dtype)
+            for name, array in self.arrays.items()
+        }
+        self.reference = DeviceArray(self.queue, (self.count + len(state.mirror_point), 3))
+        self.extremes = DeviceArray(self.queue, (self.count + self.samples, 4))
         self._most, self._least = (DeviceArray(self.queue, (self.split, 4)) for _ in range(2))
-        self._spare = [
-            DeviceArray(self.queue, each.shape, each.dtype)
-            for each in (self.position, self.velocity, self.previous, self.identity, self.mirror)
-        ]
+        self.row = DeviceArray.of(self.queue, state.sample_rows().astype(np.int32))
+        self._placed = DeviceArray(self.queue, (self.samples, 9))
         if len(state.reference):
-            self.reference.put(state.reference[: self.count])
+            self.reference.put(state.reference)
             self._list_as_noted(state)
 
     def get(self, state: State) -> None:
         """Copy the rows into a host's state."""
-        state.position_density = self.position.get()
-        state.velocity_pressure = self.velocity.get()
-        state.previous_density_rate = self.previous.get()
-        state.identity = self.identity.get()
-        state.mirror_point = self.mirror.get()
+        for name, array in self.arrays.items():
+            setattr(state, name, array.get())
         if len(state.reference):
-            points = [self.reference.get(), state.mirror_point]
-            state.reference = np.concatenate(points)
+            state.reference = self.reference.get()
+
+    def get_boundary(self, state: State) -> None:
+        """Copy the rows of the boundary into a host's state; those of the fluid are left."""
+        for name in OF_ALL:
+            getattr(state, name)[self.split :] = self.arrays[name].get(self.split)
+        for name in OF_BOUNDARY:
+            setattr(state, name, self.arrays[name].get())
+        state.reference[self.split :] = self.reference.get(self.split)
+
+    def place(self, state: State, row: Whole) -> None:
+        """Put the samples, which have rows (samples,) in a host's state, where that has them."""
+        placed = np.zeros((self.samples, 3, 3))
+        placed[:, 0] = state.position_density[row, :3]
+        placed[:, 1] = state.velocity_pressure[row, :3]
+        if self.mirrored:
+            placed[:, 2] = state.mirror_point[row - self.split]
+        self._placed.put(placed.reshape(-1, 9))
+        run(
+            self.queue, self._place, self.samples, np.int32(self.samples), np.int32(self.split),
+            self.row, self._placed, self.position, self.velocity, self.mirror,
+        )  # fmt: skip
 
     def survey(self) -> tuple[np.ndarray, np.ndarray, float, bool]:
         """Corners (3,) m of the fluid, its greatest density, whether any of it left the tank."""
@@ -78,32 +116,41 @@ class DeviceState:
         return -least[:3], most[:3], float(most[3]), bool(least[3] > 0.0)
 
     def sort(self, low: np.ndarray, high: np.ndarray, state: State) -> None:
-        """Bring near rows together and list neighbours; nothing may be outside of the tank."""
+        """Bring near rows together and list neighbours; nothing may be outside of the tank.
+
+        Where there are samples, the rows of the boundary are copied into the host's state, which
+        then has them in the order of the device.
+        """
         grid = grid_between(low, high, self.reach)
-        split, walls = self.split, self.count - self.split
+        split, others = self.split, self.count - self.split
         fluid_key = self.cells.sorted_keys(self.position, 0, split, grid)
-        wall_key = self.cells.sorted_keys(self.position, split, walls, grid)
-        rows = self.position, self.velocity, self.previous
-        position, velocity, previous, identity, mirror = self._spare
+        boundary_key = self.cells.sorted_keys(self.position, split, others, grid)
+        for name in (*OF_ALL, *OF_FLUID):
+            self._take_rows(name, fluid_key, split, 0, 0)
+        for name in OF_ALL:
+            self._take_rows(name, boundary_key, others, split, 0)
+        for name in OF_BOUNDARY:
+            self._take_rows(name, boundary_key, others, 0, split)
+        self.arrays, self._spare = self._spare, self.arrays
+        rows = self.reference.shape[0]
         run(
-            self.queue, self._gather_fluid, split, fluid_key, np.int32(split), *rows,
-            self.identity, position, velocity, previous, identity,
+            self.queue, self._note_places, rows, self.position, np.int32(self.count), self.mirror,
+            np.int32(rows), self.reference,
         )  # fmt: skip
-        mirrored = (self.mirror if self.mirrored else None, position, velocity, previous, mirror)
-        run(
-            self.queue, self._gather_boundary, walls, wall_key, np.int32(split), np.int32(walls),
-            *rows, *mirrored,
-        )  # fmt: skip
-        self._spare = [*rows, self.identity, self.mirror]
-        self.position, self.velocity, self.previous = position, velocity, previous
-        self.identity, self.mirror = identity, mirror
-        run(
-            self.queue, self._note_places, self.count, self.position, np.int32(self.count),
-            self.reference,
-        )  # fmt: skip
-        self._list(self.position, grid, fluid_key, wall_key)
         state.exit_face[:] = 0
-        state.reference, state.moved = np.zeros((self.count + len(state.mirror_point), 3)), 0.0
+        state.reference, state.moved = np.zeros((rows, 3)), 0.0
+        if self.samples:
+            self.get_boundary(state)
+            self.row.put(state.sample_rows())
+        self._list(self.position, grid, fluid_key, boundary_key)
+
+    def _take_rows(self, name: str, key: DeviceArray, count: int, first: int, base: int) -> None:
+        """Copy so many rows in the order of keys, which count rows from `base`, to `first` on."""
+        source, target = self.arrays[name], self._spare[name]
+        if source.shape[0]:
+            width = int(np.prod(source.shape[1:]))
+            numbers = map(np.int32, (count, first, base, width))
+            run(self.queue, self._gather, count, key, *numbers, source, target)
 
     def _list_as_noted(self, state: State) -> None:
         """List neighbours from where rows were when they were sorted, as they are in order."""
@@ -112,20 +159,40 @@ class DeviceState:
         rows = np.zeros((self.count, 4))
         rows[:, :3] = state.reference[: self.count]
         noted = DeviceArray.of(self.queue, rows)
-        split, walls = self.split, self.count - self.split
+        split, others = self.split, self.count - self.split
         fluid_key = self.cells.sorted_keys(noted, 0, split, grid)
-        wall_key = self.cells.sorted_keys(noted, split, walls, grid)
-        self._list(noted, grid, fluid_key, wall_key)
+        boundary_key = self.cells.sorted_keys(noted, split, others, grid)
+        self._list(noted, grid, fluid_key, boundary_key)
 
     def _list(
-        self, position: DeviceArray, grid: Grid, fluid_key: DeviceArray, wall_key: DeviceArray
+        self, position: DeviceArray, grid: Grid, fluid_key: DeviceArray, boundary_key: DeviceArray
     ) -> None:
-        split, count = self.split, self.count
+        split, others = self.split, self.count - self.split
         starts = (
             self.cells.starts(fluid_key, 0, split, grid),
-            self.cells.starts(wall_key, split, count - split, grid),
+            self.cells.starts(boundary_key, split, others, grid),
         )
-        look = self.mirror if self.mirrored else None
+        look = None
+        if self.mirrored:
+            look = DeviceArray(self.queue, (others + self.samples, 3))
+            numbers = map(np.int32, (self.count, others, look.shape[0]))
+            run(
+                self.queue, self._look_from, look.shape[0], *numbers, self.row, self.reference, look
+            )
         self.lists: NearLists = self.cells.lists(
-            position, look, split, count, grid, starts, self.reach, self.extremes
+            position, look, split, self.count, grid, starts, self.reach, self.extremes
         )
+
+    @property
+    def first_listed(self) -> int:
+        """Where the lists of samples that look from where they are begin; -1: at their rows."""
+        return self.count if self.mirrored else -1
+
+    def listed(self, row: Whole) -> Whole:
+        """Rows (samples,) of the lists that have what is around samples, of rows (samples,)."""
+        return self.count + np.arange(len(row)) if self.mirrored else row
+
+    def lengths(self) -> Lists:
+        """How many neighbours each row has, as lists of the host without the neighbours."""
+        middle, end = (each.get().astype(np.int64) for each in (self.lists.middle, self.lists.end))
+        return Lists(np.zeros(len(end), np.int64), middle, end, np.zeros(0, np.int32))

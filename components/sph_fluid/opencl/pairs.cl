@@ -1,34 +1,15 @@
 /* Accelerations and rates of density, summed over pairs; laws and structs are printed.
 
-   LANES neighbours are summed at a time, each lane by itself, and the lanes are added in order at
-   the end. Where a list ends before its last lanes do, these have the particle itself, moved out of
-   its own reach. DIFFUSION is defined where a scene has it; WALL_VOLUME, a wall particle's volume
-   over that of a particle of the fluid, where they differ. */
-
-#if LANES == 4
-#define GATHERED(array, part) \
-    ((reals)(array[j0].part, array[j1].part, array[j2].part, array[j3].part))
-#define TOTAL(lanes) ((lanes.x + lanes.y) + (lanes.z + lanes.w))
-#define GREATEST(lanes) max_real(max_real(lanes.x, lanes.y), max_real(lanes.z, lanes.w))
-#define NEAR(lane) (k + lane < stop ? near[place + item_stride * (k + lane)] : i)
-#define ROWS const int j0 = NEAR(0), j1 = NEAR(1), j2 = NEAR(2), j3 = NEAR(3)
-#define BEYOND(x) \
-    (k + 4 <= stop ? (reals)0 : (reals)(0, k + 1 < stop ? 0 : x, k + 2 < stop ? 0 : x, x))
-#elif LANES == 1
-#define GATHERED(array, part) array[j].part
-#define TOTAL(lanes) lanes
-#define GREATEST(lanes) lanes
-#define ROWS const int j = near[place + item_stride * k]
-#define BEYOND(x) 0
-#else
-#error "LANES must be 1 or 4"
-#endif
+   DIFFUSION is defined where a scene has it; VOLUME where particles of the boundary have volumes of
+   their own, over that of a particle of the fluid. */
 
 #define AS_IT_IS(slope) slope
-#ifdef WALL_VOLUME
-#define OF_WALLS(slope) (slope * (real)WALL_VOLUME)
+#ifdef VOLUME
+#define OF_NEAR(slope) (slope * NUMBERS(volume))
+#define OF_ITSELF(slope) (slope * volume[i])
 #else
-#define OF_WALLS(slope) slope
+#define OF_NEAR(slope) slope
+#define OF_ITSELF(slope) slope
 #endif
 
 /* Neighbours k to k + LANES of row i: what all sums need. */
@@ -71,7 +52,8 @@ __kernel void rates(
     int split, int count, __global const real4 *position, __global const real4 *velocity,
     __global const int *near, __global const int *middle, __global const int *end,
     long row_stride, long item_stride, Constants constants, FluidTerms fluid,
-    BoundaryTerms boundary, real4 gravity, __global real4 *rate, __global double4 *extremes)
+    BoundaryTerms boundary, real4 gravity, __global const real *volume, __global real4 *rate,
+    __global double4 *extremes)
 {
     const int i = get_global_id(0);
     if (i >= count) return;
@@ -100,11 +82,39 @@ __kernel void rates(
     }
     for (int k = turn; k < last; k += LANES) {
         PAIR(last);
-        FORCE(boundary_force, push, boundary, OF_WALLS);
+        FORCE(boundary_force, push, boundary, OF_NEAR);
     }
     const real x = constants.mass * (TOTAL(force.f0) + TOTAL(push.f0)) + gravity.x;
     const real y = constants.mass * (TOTAL(force.f1) + TOTAL(push.f1)) + gravity.y;
     const real z = constants.mass * (TOTAL(force.f2) + TOTAL(push.f2)) + gravity.z;
     rate[i] = (real4)(x, y, z, constants.mass * TOTAL(density_rate));
     extremes[i] = (double4)(x * x + y * y + z * z, GREATEST(fastest), 0, 0);
+}
+
+/* Forces on samples of surfaces: pair by pair, minus those on the fluid. Lists of samples begin at
+   `listed`, or stand at their rows if that is negative. */
+__kernel void sample_forces(
+    int samples, __global const int *row, int listed, __global const real4 *position,
+    __global const real4 *velocity, __global const int *near, __global const int *end,
+    long row_stride, long item_stride, Constants constants, BoundaryTerms boundary,
+    __global const real *volume, __global double4 *force)
+{
+    const int s = get_global_id(0);
+    if (s >= samples) return;
+    const int i = row[s], list = listed < 0 ? i : listed + s;
+    const real4 r = position[i], u = velocity[i];
+    const size_t place = (size_t)list * row_stride;
+    const int last = end[list];
+    const real far = 4 * constants.smoothing.length_;
+    const tuple_3v own = {u.x, u.y, u.z};
+    const real more = r.w + constants.base + constants.base;
+    tuple_3v push = {0, 0, 0};
+    reals density_rate = 0, fastest = 0;
+    for (int k = 0; k < last; k += LANES) {
+        PAIR(last);
+        FORCE(boundary_force, push, boundary, OF_ITSELF);
+    }
+    const double square = constants.mass * constants.mass;
+    force[s] = (double4)(
+        square * TOTAL(push.f0), square * TOTAL(push.f1), square * TOTAL(push.f2), 0);
 }

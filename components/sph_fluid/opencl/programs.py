@@ -19,23 +19,26 @@ from quintet.components.sph_fluid.laws import (
 )
 
 HERE = Path(__file__).parent
+OF_ROWS = ("rows", "boundary", "films", "steps")
 VECTOR = (0.0, 0.0, 0.0)
 SIX, TEN = (0.0,) * 6, (0.0,) * 10
 
 
-def rows_program(law: PairLaw, precision: Precision) -> str:
-    """Sorting, searching, walls and steps: always in double precision.
+def rows_program(law: PairLaw, precision: Precision, lanes: int) -> str:
+    """Sorting, searching, the boundary and steps: always in double precision.
 
     `precision` is that of the rates, of which steps are made.
     """
-    program, constants = Program("double"), law.constants
+    program, constants = Program("double", lanes), law.constants
     search = cells.source(program)
     fit = mirrored_density
     names = [
+        f"#define LANES {lanes}",
         _named(program, "pressure_term", pressure_term, 0.0, constants),
         _named(program, "kernel_of", kernel, 0.0, constants.smoothing),
         _named(program, "failed", failed, 0.0, 0.0, 0.0),
-        _named(program, "add_moments", fit.add_moments, TEN, 0.0, 0.0, 0.0, 0.0),
+        _named(program, "kernel_in_lanes", kernel, LANES, constants.smoothing),
+        _named(program, "add_moments", fit.add_moments, (LANES,) * 10, *(LANES,) * 4),
         _named(program, "mean_and_variance", fit.mean_and_variance, TEN),
         _named(program, "solve", fit.solve, SIX, 0.0, 0.0, 0.0),
         _named(program, "distance_to", fit.distance, VECTOR, 0.0, 0.0, 0.0),
@@ -43,14 +46,11 @@ def rows_program(law: PairLaw, precision: Precision) -> str:
         f"#define NO_FLUID {fit.NO_FLUID!r}",
         f"#define RATE4 {'double4' if precision == 'double' else 'float4'}",
     ]
-    return "\n".join([program.text, *names, search, (HERE / "rows.cl").read_text()])
+    return "\n".join([program.text, *names, search, *_sources("lanes", *OF_ROWS)])
 
 
-def pairs_program(law: PairLaw, precision: Precision, lanes: int, wall_volume: float = 1.0) -> str:
-    """Sums over pairs, of the terms of a pair law, in either precision.
-
-    `wall_volume` is that of a wall particle over that of a particle of the fluid.
-    """
+def pairs_program(law: PairLaw, precision: Precision, lanes: int) -> str:
+    """Sums over pairs, of the terms of a pair law, in either precision."""
     program, constants = Program(precision, lanes), law.constants
     force = ((LANES,) * 3, (LANES,) * 3, (LANES,) * 3, (LANES,) * 3, *(LANES,) * 6)
     names = [
@@ -62,12 +62,17 @@ def pairs_program(law: PairLaw, precision: Precision, lanes: int, wall_volume: f
         f"#define FluidTerms {program.struct(law.fluid)}",
         f"#define BoundaryTerms {program.struct(law.boundary)}",
     ]
-    if wall_volume != 1.0:
-        names.append(f"#define WALL_VOLUME {wall_volume!r}")
+    if law.boundary.volume is not None:
+        names.append("#define VOLUME")
     if law.fluid.diffusion.on is not None:
         flux = (*(LANES,) * 4, law.fluid.diffusion)
         names += ["#define DIFFUSION", _named(program, "diffusive_flux", diffusive_flux, *flux)]
-    return "\n".join([program.text, *names, (HERE / "pairs.cl").read_text()])
+    return "\n".join([program.text, *names, *_sources("lanes", "pairs")])
+
+
+def _sources(*names: str) -> list[str]:
+    """Kernels, of files beside this one."""
+    return [(HERE / f"{name}.cl").read_text() for name in names]
 
 
 def _named(program: Program, name: str, law: Any, *arguments: Any) -> str:

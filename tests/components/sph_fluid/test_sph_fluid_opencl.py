@@ -244,12 +244,6 @@ def test_what_devices_cannot_compute_is_refused_by_name(key):
         refuse_what_needs_the_processor(params, "opencl")
 
 
-def test_links_to_bodies_are_refused():
-    device = DeviceFluid(params_of(DYNAMIC), DEVICE)
-    with pytest.raises(SceneError, match=r"must have no links to bodies.*Remove the links"):
-        device.bind({"surface.volume": np.ones(2)}, frozenset({"surface"}))
-
-
 def test_a_device_that_is_not_there_is_refused():
     with pytest.raises(SceneError, match=r"device opencl:99: .*found 1.*`quintet devices`"):
         DeviceFluid(params_of(DYNAMIC), Resources(device="opencl:99"))

@@ -1,0 +1,129 @@
+"""Passes over the pairs of a fluid on a device, and what walls and samples have before them."""
+
+import math
+from typing import Any
+
+import numpy as np
+
+from quintet.components.shared.opencl.arrays import DeviceArray, run
+from quintet.components.shared.opencl.devices import build
+from quintet.components.shared.opencl.prelude import Precision
+from quintet.components.shared.opencl.types import bytes_of
+from quintet.components.shared.single_precision import rounded
+from quintet.components.sph_fluid.constants import pair_law
+from quintet.components.sph_fluid.opencl.device_state import DeviceState
+from quintet.components.sph_fluid.opencl.programs import pairs_program
+from quintet.components.sph_fluid.params import SphFluidParams
+from quintet.components.sph_fluid.state import Array
+
+
+class Passes:
+    """Passes over the pairs of one fluid.
+
+    Parameters
+    ----------
+    params : SphFluidParams
+    lanes : int
+        Neighbours that are summed at once.
+    kernels : pyopencl.Program
+        Of `programs.rows_program`.
+    rows : DeviceState
+    precision : "double" or "single"
+        Of pairs.
+    """
+
+    def __init__(
+        self, params: SphFluidParams, lanes: int, kernels: Any, rows: DeviceState,
+        precision: Precision,
+    ) -> None:  # fmt: skip
+        self.params, self.rows, self.precision = params, rows, precision
+        self.queue, self.lanes = rows.queue, lanes
+        self._extrapolate, self._narrow = kernels.extrapolate_density, kernels.narrow
+        self._real = np.float64 if precision == "double" else np.float32
+        self._constants = bytes_of(pair_law(params).constants, np.float64)
+        self._gravity = np.array([*params.gravity, 0.0], self._real)
+        gravity = math.hypot(*params.hydrostatic_gravity)
+        self._rest_gradient = np.float64(params.density * gravity / params.sound_speed**2)
+        self._build(own_volume=False)
+
+    def _build(self, own_volume: bool) -> None:
+        """Compile the sums over pairs, with or without volumes of boundary particles."""
+        law = pair_law(self.params, own_volume=own_volume or None)
+        program = build(self.queue, pairs_program(law, self.precision, self.lanes), self.precision)
+        self._rates, self._sample_forces = program.rates, program.sample_forces
+        self._own_volume = own_volume
+        if self.precision == "single":
+            # Densities are counted from that at no pressure, as `SinglePrecision` counts them.
+            constants = law.constants._replace(base=law.constants.density)
+            law = rounded(law._replace(constants=constants))
+        terms = (law.constants, law.fluid, law.boundary)
+        self._law = tuple(bytes_of(each, self._real) for each in terms)
+
+    def resize(self) -> None:
+        """Make room for a state that was copied to the device."""
+        shape = (self.rows.count, 4)
+        self.rate = DeviceArray(self.queue, shape, self._real)
+        self.force = DeviceArray(self.queue, (self.rows.samples, 4))
+        if self.precision == "single":
+            self._copies = [DeviceArray(self.queue, shape, self._real) for _ in range(2)]
+
+    def follow(self, volume: Array) -> None:
+        """Follow new lists, with volumes (n,) of all rows, (0,) if all are alike.
+
+        They are over that of a particle of the fluid.
+        """
+        self._volume = DeviceArray.of(self.queue, volume.astype(self._real))
+        if bool(len(volume)) != self._own_volume:
+            self._build(bool(len(volume)))
+
+    def centre(self, low: Any, high: Any) -> None:
+        """Count single positions from the middle of the fluid, between two corners (3,) m."""
+        self._origin = np.array([*(0.5 * (high + low)), self.params.density])
+
+    @property
+    def moving(self) -> int:
+        """Rows whose density obeys the equation of continuity, from the first on."""
+        return self.rows.split if self.params.mirrored else self.rows.count
+
+    def compute(self) -> None:
+        """Write accelerations and rates of density, of the state as it is."""
+        rows, lists = self.rows, self.rows.lists
+        strides = (lists.row_stride, lists.item_stride)
+        split, count = np.int32(rows.split), np.int32(rows.count)
+        if self.params.mirrored:
+            run(
+                self.queue, self._extrapolate, rows.count - rows.split, split, count, rows.mirror,
+                rows.arrays["sample"], rows.position, rows.velocity, lists.near, lists.end,
+                *strides, self._rest_gradient, self._constants,
+            )  # fmt: skip
+        self._particles = self._in_precision()
+        run(
+            self.queue, self._rates, self.moving, split, np.int32(self.moving), *self._particles,
+            lists.near, lists.middle, lists.end, *strides, *self._law, self._gravity,
+            self._volume, self.rate, rows.extremes,
+        )  # fmt: skip
+
+    def push_samples(self) -> Array:
+        """Forces (samples, 3) N on samples: minus those of the last pass on the fluid."""
+        rows, lists = self.rows, self.rows.lists
+        constants, _, boundary = self._law
+        numbers = (np.int32(rows.samples), rows.row, np.int32(rows.first_listed))
+        run(
+            self.queue, self._sample_forces, rows.samples, *numbers, *self._particles,
+            lists.near, lists.end, lists.row_stride, lists.item_stride, constants, boundary,
+            self._volume, self.force,
+        )  # fmt: skip
+        return np.asarray(self.force.get()[:, :3])
+
+    def _in_precision(self) -> tuple[DeviceArray, DeviceArray]:
+        """Positions and velocities in the precision of pairs."""
+        rows = self.rows
+        if self.precision == "double":
+            return rows.position, rows.velocity
+        position, velocity = self._copies
+        for source, origin, copy in (
+            (rows.position, self._origin, position),
+            (rows.velocity, np.zeros(4), velocity),
+        ):
+            run(self.queue, self._narrow, rows.count, source, np.int32(rows.count), origin, copy)
+        return position, velocity
