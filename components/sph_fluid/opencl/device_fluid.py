@@ -13,12 +13,12 @@ from functools import partial
 import numpy as np
 
 from quintet.components.shared.opencl.devices import device_of
+from quintet.components.shared.search.verlet_list import longest
 from quintet.components.sph_fluid import MANIFEST, diagnostics, judgement
 from quintet.components.sph_fluid.boundary.method import NoFilms
 from quintet.components.sph_fluid.boundary.no_pistons import NoPistons
 from quintet.components.sph_fluid.boundary.symmetry_planes import NoSymmetry
 from quintet.components.sph_fluid.component import LOADS, SphFluid
-from quintet.components.sph_fluid.integration.extrapolated import Extrapolated
 from quintet.components.sph_fluid.mass_balance.losses import refuse_many_lost
 from quintet.components.sph_fluid.motion.frame import StillFrame
 from quintet.components.sph_fluid.open_boundaries.method import NoOpenBoundaries
@@ -68,7 +68,6 @@ class DeviceFluid(Component):
             (host.damping, NoDamping), (host.pistons, NoPistons), (host.symmetry, NoSymmetry),
             (host.open_boundaries, NoOpenBoundaries), (host.frame, StillFrame),
             (host.all_ranks, OneRank), (host.filter, type(None)),
-            (host.integration, Extrapolated),
         )  # fmt: skip
         others = [type(part).__name__ for part, expected in pairs if type(part) is not expected]
         others += [type(p).__name__ for p in host.pressure_parts if p is not host.boundary]
@@ -113,7 +112,7 @@ class DeviceFluid(Component):
         """Advance by dt [s]."""
         host = self.host
         host.samples.require_placed()
-        if host.lists.need_rebuild(host.state, host.boundary, dt):
+        if host.lists.need_rebuild(host.state, host.boundary, dt, self._speed):
             self._sort()
         state = host.state
         if state.steps % judgement.EVERY == 0:
@@ -125,7 +124,7 @@ class DeviceFluid(Component):
         if extremes.failed:
             self._get()
             raise diagnostics.failure(state, self.params, dt, host.all_ranks)
-        state.moved = extremes.moved
+        state.moved, self._speed = extremes.moved, extremes.speed
         state.largest_acceleration, state.largest_approach = extremes[:2]
         state.last_dt, state.steps = dt, state.steps + 1
 
@@ -171,7 +170,7 @@ class DeviceFluid(Component):
         if len(state.reference):
             points = state.reference[: state.fluid]
             self.stepping.passes.centre(points.min(axis=0), points.max(axis=0))
-        self._is_read = True
+        self._is_read, self._speed = True, longest(state.velocity_pressure[: state.fluid])
         self._follow_lists()
 
     def _get(self) -> None:

@@ -13,7 +13,7 @@ from quintet.components.sph_fluid.state import State, Whole
 
 # Arrays of `State` that are on the device, by the rows that they have.
 OF_ALL = ("position_density", "velocity_pressure", "previous_density_rate")
-OF_FLUID = ("identity",)
+OF_FLUID = ("identity", "acceleration")
 OF_BOUNDARY = ("mirror_point", "sample")
 
 
@@ -91,6 +91,14 @@ class DeviceState:
         for name in OF_BOUNDARY:
             setattr(state, name, self.arrays[name].get())
         state.reference[self.split :] = self.reference.get(self.split)
+
+    def make_acceleration(self) -> bool:
+        """Make room for accelerations (fluid, 3) m/s2; False where they are there."""
+        if self.arrays["acceleration"].shape[0]:
+            return False
+        for arrays in (self.arrays, self._spare):
+            arrays["acceleration"] = DeviceArray(self.queue, (self.split, 3))
+        return True
 
     def place(self, state: State, row: Whole) -> None:
         """Put the samples, which have rows (samples,) in a host's state, where that has them."""

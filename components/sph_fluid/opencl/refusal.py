@@ -6,12 +6,13 @@ from quintet.interfaces.errors import SceneError
 # Every key of a fluid stands here, in `SUPPORTED`, or in the table of `mistakes`: a test sees to it
 # that one added later is not ignored in silence.
 SUPPORTED = frozenset(
-    """material spacing sound_speed fluid initial lost_limit remove_inside_bodies dimensions kernel
-    smoothing staggered density gravity density_diffusion negative_pressure precision courant gauges
-    wave viscosity.artificial viscosity.form boundary.walls boundary.open_faces
-    boundary.wall_velocity boundary.obstacles boundary.meshes boundary.wall_offset
-    boundary.sample_depth boundary.wall_viscosity_factor boundary.lubrication_films
-    boundary.roughness boundary.potential_stiffness boundary.potential_exponent""".split()
+    """material spacing sound_speed fluid initial lost_limit remove_inside_bodies dimensions
+    kernel smoothing staggered density gravity density_diffusion negative_pressure precision
+    integration courant gauges wave viscosity.artificial viscosity.form boundary.walls
+    boundary.open_faces boundary.wall_velocity boundary.obstacles boundary.meshes
+    boundary.wall_offset boundary.sample_depth boundary.wall_viscosity_factor
+    boundary.lubrication_films boundary.roughness boundary.potential_stiffness
+    boundary.potential_exponent""".split()
 )
 
 
@@ -49,7 +50,6 @@ def limits(params: SphFluidParams) -> dict[str, tuple[object, bool, str, str]]:
         "boundary.motion": ("a motion", edge.motion is not None, "left out"),
         "boundary.method": (edge.method, edge.method == "potential", "mdbc or dbc"),
         "viscosity.kinematic": (kinematic, rubs, "0 with mirrored walls that rub"),
-        "integration": (params.integration, params.integration != "extrapolated", "extrapolated"),
     }
     return {key: (*limit, "Remove them") for key, limit in lists.items()} | {
         key: (*limit, "Change it") for key, limit in changed.items()

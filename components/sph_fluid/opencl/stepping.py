@@ -1,4 +1,4 @@
-"""A step of a fluid on a device: a pass over pairs, what it pushes, and rows in time."""
+"""Steps of a fluid on a device: its rows, passes over pairs, a scheme in time."""
 
 import math
 from collections.abc import Callable
@@ -6,15 +6,13 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from quintet.components.shared.opencl.arrays import run
 from quintet.components.shared.opencl.devices import Device, build
 from quintet.components.shared.opencl.prelude import Precision
-from quintet.components.shared.opencl.types import bytes_of
 from quintet.components.sph_fluid.constants import pair_law
-from quintet.components.sph_fluid.integration.extrapolated import AHEAD
 from quintet.components.sph_fluid.opencl.device_state import DeviceState
 from quintet.components.sph_fluid.opencl.passes import Passes
 from quintet.components.sph_fluid.opencl.programs import rows_program
+from quintet.components.sph_fluid.opencl.schemes import scheme
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.ranks.method import Ranks
 from quintet.components.sph_fluid.state import State
@@ -32,6 +30,7 @@ class Extremes(NamedTuple):
     acceleration: float  # m/s2, largest
     approach: float  # 1/s, largest
     moved: float  # m, furthest from where the lists were made
+    speed: float  # m/s, with position Verlet; else 0
     failed: bool
 
 
@@ -53,30 +52,21 @@ class Stepping:
         precision: Precision = "double" if params.precision == "float64" else "single"
         law, lanes = pair_law(params), LANES_OF_PROCESSORS if device.is_processor else 1
         kernels = build(self.queue, rows_program(law, precision, lanes))
-        self._advance = kernels.advance
         self._of_films = kernels.film_sides, kernels.fluid_share
         self.rows = DeviceState(self.queue, kernels, params, reach, device.is_processor)
         self.passes = Passes(params, lanes, kernels, self.rows, precision)
-        self._constants = bytes_of(law.constants, np.float64)
+        self._scheme = scheme(params, kernels, self.rows, self.passes)
 
     def step(self, state: State, dt: float, apply_forces: Callable[[], None]) -> Extremes:
         """Advance the rows by dt [s]; `state` tells of the last step.
 
         `apply_forces` is called once, when the rates are those that the step is made of.
         """
-        rows, last, moving = self.rows, state.last_dt, self.passes.moving
-        self.passes.compute()
-        apply_forces()
-        # As integration/extrapolated.py has it.
-        ahead = AHEAD * min(dt / last, 2.0) if last > 0.0 else 0.0
-        numbers = map(np.float64, (dt, ahead, self.params.spacing))
-        run(
-            self.queue, self._advance, moving, np.int32(rows.split), np.int32(moving), *numbers,
-            self._constants, rows.position, rows.velocity, self.passes.rate,
-            rows.arrays["previous_density_rate"], rows.reference, rows.extremes,
-        )  # fmt: skip
-        square, approach, shift2, failed = rows.cells.greatest(rows.extremes, rows.split)
-        return Extremes(math.sqrt(square), float(approach), math.sqrt(shift2), bool(failed > 0.0))
+        rows = self.rows
+        self._scheme.step(dt, state.last_dt, apply_forces)
+        square, approach, shift2, speed2 = rows.cells.greatest(rows.extremes, rows.split)
+        acceleration, moved, speed = map(math.sqrt, (square, shift2, speed2))
+        return Extremes(acceleration, float(approach), moved, speed, bool(np.isinf(speed2)))
 
     def make_film_rows(self, films: "Films", faces: "Faces", ranks: Ranks) -> "DeviceFilmRows":
         """Rows that films lie between."""

@@ -32,8 +32,13 @@ class FluidLists:
         """What kernels take."""
         return self.near.arrays
 
-    def need_rebuild(self, state: State, boundary: BoundaryMethod, dt: float) -> bool:
-        """Whether pairs may meet in a step of dt [s] that the lists lack."""
+    def need_rebuild(
+        self, state: State, boundary: BoundaryMethod, dt: float, speed: float | None = None
+    ) -> bool:
+        """Whether pairs may meet in a step of dt [s] that the lists lack.
+
+        `speed` is that of the fastest fluid [m/s], if it is not to be found in the state.
+        """
         if len(state.reference) == 0:
             return True
         row, moved = self.samples.row, 0.0
@@ -43,7 +48,9 @@ class FluidLists:
             )
             moved = max(moved, boundary.displacement(state))
         # Each of two goes to the middle of the step at its speed.
-        coming = dt * longest(state.velocity_pressure[: state.fluid]) if self.middle else 0.0
+        if self.middle and speed is None:
+            speed = longest(state.velocity_pressure[: state.fluid])
+        coming = dt * speed if self.middle and speed else 0.0
         if self.middle or len(self.samples.volume):
             moved, coming = self.ranks.greatest(moved, coming)
         return slack(self.reach - self.cutoff - coming, state.moved, moved) < 0.0

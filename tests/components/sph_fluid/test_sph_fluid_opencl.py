@@ -70,7 +70,13 @@ def difference(first, second, name):
     return np.abs(a - b).max() / np.abs(a).max()
 
 
-@pytest.mark.parametrize(("table", "steps"), [(MIRRORED, 200), (DYNAMIC, 60)])
+TWICE = {"integration": "symplectic", "courant": 0.4}
+
+
+@pytest.mark.parametrize(
+    ("table", "steps"),
+    [(MIRRORED, 200), (DYNAMIC, 60), (MIRRORED | TWICE, 100), (DYNAMIC | TWICE, 40)],
+)
 def test_a_device_computes_as_the_processor_does(table, steps):
     params = params_of(table)
     processor, device = (
@@ -87,7 +93,7 @@ def test_a_device_computes_as_the_processor_does(table, steps):
     assert np.abs(first["reference"] - second["reference"]).max() < 1e-13
 
 
-@pytest.mark.parametrize("table", [MIRRORED, DYNAMIC])
+@pytest.mark.parametrize("table", [MIRRORED, DYNAMIC | TWICE])
 def test_a_device_that_is_no_processor_gets_lists_by_columns_and_single_lanes(table, monkeypatch):
     monkeypatch.setattr(Device, "is_processor", property(lambda self: False))
     params = params_of(table)
@@ -146,8 +152,9 @@ def test_the_same_device_gives_the_same_bits_on_any_number_of_threads():
         assert np.array_equal(array, again[key], equal_nan=True), key
 
 
-def test_a_snapshot_of_a_device_goes_on_there_with_the_same_bits():
-    params = params_of(MIRRORED)
+@pytest.mark.parametrize("changes", [{}, TWICE])
+def test_a_snapshot_of_a_device_goes_on_there_with_the_same_bits(changes):
+    params = params_of(MIRRORED | changes)
     device = advanced(DeviceFluid(params, DEVICE), 25)
     saved = device.save()
     other = DeviceFluid(params, DEVICE)
@@ -157,8 +164,9 @@ def test_a_snapshot_of_a_device_goes_on_there_with_the_same_bits():
         assert np.array_equal(array, second[key], equal_nan=True), key
 
 
-def test_snapshots_go_on_elsewhere():
-    params = params_of(MIRRORED)
+@pytest.mark.parametrize("changes", [{}, TWICE])
+def test_snapshots_go_on_elsewhere(changes):
+    params = params_of(MIRRORED | changes)
     device, processor = DeviceFluid(params, DEVICE), SphFluid(params)
     advanced(device, 25), advanced(processor, 25)
     moved_out, moved_in = SphFluid(params), DeviceFluid(params, DEVICE)
@@ -189,7 +197,6 @@ def test_fluid_that_leaves_the_tank_is_lost_as_on_the_processor():
 REFUSED = {
     "boundary.method": {"boundary": DYNAMIC["boundary"] | {"method": "potential"}},
     "boundary.symmetry": {"boundary": DYNAMIC["boundary"] | {"symmetry": ["y-"]}},
-    "integration": {"integration": "symplectic"},
     "xsph": {"xsph": 0.5},
     "shepard_every": {"shepard_every": 20},
     "viscosity.kinematic": {
@@ -223,8 +230,6 @@ def test_parts_of_the_host_that_no_key_tells_of_are_refused(monkeypatch):
     monkeypatch.setattr(device_fluid, "refuse_what_needs_the_processor", lambda *_: None)
     with pytest.raises(SceneError, match=r"on device opencl, .* found DampingZones\. Set device"):
         DeviceFluid(params_of(DYNAMIC | FLUME), DEVICE)
-    with pytest.raises(SceneError, match=r"found PositionVerlet"):
-        DeviceFluid(params_of(DYNAMIC | {"integration": "symplectic"}), DEVICE)
 
 
 def test_every_key_of_a_fluid_is_supported_or_limited():

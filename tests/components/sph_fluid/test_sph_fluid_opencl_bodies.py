@@ -118,6 +118,7 @@ CASES = [
     (MIRRORED | {"kernel": "quintic"}, START, 0.8),
     (FILMS, LOW, 1.0),
     (FILMS | {"boundary__lubrication_films": "auto"}, LOW, 1.0),
+    (FILMS | {"integration": "symplectic"}, LOW, 1.0),
 ]
 
 
