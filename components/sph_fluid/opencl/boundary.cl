@@ -80,3 +80,45 @@ __kernel void extrapolate_density(
     position[i].w = density;
     velocity[i].w = pressure_term(density, constants);
 }
+
+/* Velocities of walls and samples that bring the fluid to rest at the face, for viscosity. */
+__kernel void mirror_velocity(
+    int split, int count, __global const double *mirror, __global const double4 *position,
+    __global const double4 *velocity, __global const int *near, __global const int *end,
+    long row_stride, long item_stride, Constants constants, __global RATE4 *apparent)
+{
+    const int b = get_global_id(0), i = split + b;
+    if (i >= count) return;
+    const double3 at = vload3(b, mirror);
+    const double inverse = 1.0 / constants.smoothing.length_;
+    const size_t place = (size_t)i * row_stride;
+    tuple_10r moments = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
+    for (int k = 0; k < end[i]; k++) {
+        const double4 r = position[near[place + item_stride * k]];
+        const double3 d = r.xyz - at;
+        const double weight = kernel_of(square_of(d), constants.smoothing) * constants.mass / r.w;
+        moments = add_moment(
+            moments, weight, d.x * inverse, d.y * inverse, d.z * inverse);
+    }
+    double4 u = velocity[i];
+    if (moments.f0 >= NO_FLUID) {
+        const Moments about = mean_and_variance(moments);
+        const tuple_3r middle = about.f0;
+        const tuple_3r slope = solve(about.f1, -middle.f0, -middle.f1, -middle.f2);
+        double3 there = 0;
+        for (int k = 0; k < end[i]; k++) {
+            const int j = near[place + item_stride * k];
+            const double4 r = position[j];
+            const double3 d = r.xyz - at;
+            const double weight =
+                kernel_of(square_of(d), constants.smoothing) * constants.mass / r.w;
+            const double share = weight / moments.f0
+                * (1.0 + slope.f0 * (d.x * inverse - middle.f0)
+                   + slope.f1 * (d.y * inverse - middle.f1)
+                   + slope.f2 * (d.z * inverse - middle.f2));
+            there += share * velocity[j].xyz;
+        }
+        u.xyz = 2.0 * u.xyz - there;
+    }
+    apparent[i] = (RATE4)(u.x, u.y, u.z, 0);
+}

@@ -1,7 +1,8 @@
 /* Accelerations and rates of density, summed over pairs; laws and structs are printed.
 
    DIFFUSION is defined where a scene has it; VOLUME where particles of the boundary have volumes of
-   their own, over that of a particle of the fluid. */
+   their own, over that of a particle of the fluid; APPARENT where these have velocities of their own
+   that kinematic viscosity sees. */
 
 #define AS_IT_IS(slope) slope
 #ifdef VOLUME
@@ -10,6 +11,15 @@
 #else
 #define OF_NEAR(slope) slope
 #define OF_ITSELF(slope) slope
+#endif
+
+#ifdef APPARENT
+#define SEEN_NEAR \
+    {GATHERED(apparent, x), GATHERED(apparent, y), GATHERED(apparent, z)}
+#define SEEN_ITSELF apparent[i]
+#else
+#define SEEN_NEAR other
+#define SEEN_ITSELF u
 #endif
 
 /* Neighbours k to k + LANES of row i: what all sums need. */
@@ -23,7 +33,7 @@
     const reals r2 = dx * dx + dy * dy + dz * dz; \
     const reals dot = dx * (u.x - other.f0) + dy * (u.y - other.f1) + dz * (u.z - other.f2)
 
-#define FORCE(law, sum, terms, weighted) \
+#define FORCE(law, sum, terms, weighted, seen) \
     const reals density = GATHERED(position, w); \
     const tuple_3v per = inverses(r2, more + density, constants); \
     const reals approach = dot * per.f1; \
@@ -32,7 +42,7 @@
     const reals pressures = u.w + GATHERED(velocity, w); \
     fastest = max_reals(fastest, fabs(approach)); \
     density_rate += dot * slope; \
-    sum = law(sum, away, own, other, r2, pressures, approach, slope, per.f1, per.f2, terms)
+    sum = law(sum, away, own, seen, r2, pressures, approach, slope, per.f1, per.f2, terms)
 
 /* Of a wall whose density obeys the equation of continuity. */
 static real continuity(
@@ -52,8 +62,8 @@ __kernel void rates(
     int split, int count, __global const real4 *position, __global const real4 *velocity,
     __global const int *near, __global const int *middle, __global const int *end,
     long row_stride, long item_stride, Constants constants, FluidTerms fluid,
-    BoundaryTerms boundary, real4 gravity, __global const real *volume, __global real4 *rate,
-    __global double4 *extremes)
+    BoundaryTerms boundary, real4 gravity, __global const real *volume,
+    __global const real4 *apparent, __global real4 *rate, __global double4 *extremes)
 {
     const int i = get_global_id(0);
     if (i >= count) return;
@@ -74,7 +84,7 @@ __kernel void rates(
     reals density_rate = 0, fastest = 0;
     for (int k = 0; k < turn; k += LANES) {
         PAIR(turn);
-        FORCE(fluid_force, force, fluid, AS_IT_IS);
+        FORCE(fluid_force, force, fluid, AS_IT_IS, other);
 #ifdef DIFFUSION
         const reals flux = diffusive_flux(density - r.w, dx, dy, dz, fluid.diffusion);
         density_rate -= flux * slope * (r2 * per.f1 * per.f2);
@@ -82,7 +92,8 @@ __kernel void rates(
     }
     for (int k = turn; k < last; k += LANES) {
         PAIR(last);
-        FORCE(boundary_force, push, boundary, OF_NEAR);
+        const tuple_3v apparent_j = SEEN_NEAR;
+        FORCE(boundary_force, push, boundary, OF_NEAR, apparent_j);
     }
     const real x = constants.mass * (TOTAL(force.f0) + TOTAL(push.f0)) + gravity.x;
     const real y = constants.mass * (TOTAL(force.f1) + TOTAL(push.f1)) + gravity.y;
@@ -97,7 +108,7 @@ __kernel void sample_forces(
     int samples, __global const int *row, int listed, __global const real4 *position,
     __global const real4 *velocity, __global const int *near, __global const int *end,
     long row_stride, long item_stride, Constants constants, BoundaryTerms boundary,
-    __global const real *volume, __global double4 *force)
+    __global const real *volume, __global const real4 *apparent, __global double4 *force)
 {
     const int s = get_global_id(0);
     if (s >= samples) return;
@@ -106,13 +117,14 @@ __kernel void sample_forces(
     const size_t place = (size_t)list * row_stride;
     const int last = end[list];
     const real far = 4 * constants.smoothing.length_;
-    const tuple_3v own = {u.x, u.y, u.z};
+    const real4 seen = SEEN_ITSELF;
+    const tuple_3v own = {seen.x, seen.y, seen.z};
     const real more = r.w + constants.base + constants.base;
     tuple_3v push = {0, 0, 0};
     reals density_rate = 0, fastest = 0;
     for (int k = 0; k < last; k += LANES) {
         PAIR(last);
-        FORCE(boundary_force, push, boundary, OF_ITSELF);
+        FORCE(boundary_force, push, boundary, OF_ITSELF, other);
     }
     const double square = constants.mass * constants.mass;
     force[s] = (double4)(

@@ -39,6 +39,10 @@ class Passes:
         self.params, self.rows, self.precision = params, rows, precision
         self.queue, self.lanes = rows.queue, lanes
         self._extrapolate, self._narrow = kernels.extrapolate_density, kernels.narrow
+        self._mirror_velocity = kernels.mirror_velocity
+        rubs = params.viscosity.kinematic > 0.0 and params.boundary.wall_viscosity_factor > 0.0
+        self._has_apparent = params.mirrored and rubs
+        self._apparent: DeviceArray | None = None
         self._real = np.float64 if precision == "double" else np.float32
         self._constants = bytes_of(pair_law(params).constants, np.float64)
         self._gravity = np.array([*params.gravity, 0.0], self._real)
@@ -49,7 +53,8 @@ class Passes:
     def _build(self, own_volume: bool) -> None:
         """Compile the sums over pairs, with or without volumes of boundary particles."""
         law = pair_law(self.params, own_volume=own_volume or None)
-        program = build(self.queue, pairs_program(law, self.precision, self.lanes), self.precision)
+        text = pairs_program(law, self.precision, self.lanes, self._has_apparent)
+        program = build(self.queue, text, self.precision)
         self._rates, self._sample_forces = program.rates, program.sample_forces
         self._own_volume = own_volume
         if self.precision == "single":
@@ -64,6 +69,9 @@ class Passes:
         shape = (self.rows.count, 4)
         self.rate = DeviceArray(self.queue, shape, self._real)
         self.force = DeviceArray(self.queue, (self.rows.samples, 4))
+        if self._has_apparent:
+            # Lanes behind the end of a list read rows of the fluid: they must be finite.
+            self._apparent = DeviceArray.of(self.queue, np.zeros(shape, self._real))
         if self.precision == "single":
             self._copies = [DeviceArray(self.queue, shape, self._real) for _ in range(2)]
 
@@ -96,11 +104,17 @@ class Passes:
                 rows.arrays["sample"], rows.position, rows.velocity, lists.near, lists.end,
                 *strides, self._rest_gradient, self._constants,
             )  # fmt: skip
+        if self._has_apparent:
+            run(
+                self.queue, self._mirror_velocity, rows.count - rows.split, split, count,
+                rows.mirror, rows.position, rows.velocity, lists.near, lists.end, *strides,
+                self._constants, self._apparent,
+            )  # fmt: skip
         self._particles = self._in_precision()
         run(
             self.queue, self._rates, self.moving, split, np.int32(self.moving), *self._particles,
             lists.near, lists.middle, lists.end, *strides, *self._law, self._gravity,
-            self._volume, self.rate, rows.extremes,
+            self._volume, self._apparent, self.rate, rows.extremes,
         )  # fmt: skip
 
     def push_samples(self) -> Array:
@@ -111,7 +125,7 @@ class Passes:
         run(
             self.queue, self._sample_forces, rows.samples, *numbers, *self._particles,
             lists.near, lists.end, lists.row_stride, lists.item_stride, constants, boundary,
-            self._volume, self.force,
+            self._volume, self._apparent, self.force,
         )  # fmt: skip
         return np.asarray(self.force.get()[:, :3])
 

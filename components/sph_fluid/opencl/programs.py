@@ -38,6 +38,7 @@ def rows_program(law: PairLaw, precision: Precision, lanes: int) -> str:
         _named(program, "kernel_of", kernel, 0.0, constants.smoothing),
         _named(program, "failed", failed, 0.0, 0.0, 0.0),
         _named(program, "kernel_in_lanes", kernel, LANES, constants.smoothing),
+        _named(program, "add_moment", fit.add_moments, TEN, 0.0, 0.0, 0.0, 0.0),
         _named(program, "add_moments", fit.add_moments, (LANES,) * 10, *(LANES,) * 4),
         _named(program, "mean_and_variance", fit.mean_and_variance, TEN),
         _named(program, "solve", fit.solve, SIX, 0.0, 0.0, 0.0),
@@ -49,8 +50,11 @@ def rows_program(law: PairLaw, precision: Precision, lanes: int) -> str:
     return "\n".join([program.text, *names, search, *_sources("lanes", *OF_ROWS)])
 
 
-def pairs_program(law: PairLaw, precision: Precision, lanes: int) -> str:
-    """Sums over pairs, of the terms of a pair law, in either precision."""
+def pairs_program(law: PairLaw, precision: Precision, lanes: int, apparent: bool = False) -> str:
+    """Sums over pairs, of the terms of a pair law, in either precision.
+
+    `apparent` tells whether the boundary has velocities of its own that viscosity sees.
+    """
     program, constants = Program(precision, lanes), law.constants
     force = ((LANES,) * 3, (LANES,) * 3, (LANES,) * 3, (LANES,) * 3, *(LANES,) * 6)
     names = [
@@ -64,6 +68,8 @@ def pairs_program(law: PairLaw, precision: Precision, lanes: int) -> str:
     ]
     if law.boundary.volume is not None:
         names.append("#define VOLUME")
+    if apparent:
+        names.append("#define APPARENT")
     if law.fluid.diffusion.on is not None:
         flux = (*(LANES,) * 4, law.fluid.diffusion)
         names += ["#define DIFFUSION", _named(program, "diffusive_flux", diffusive_flux, *flux)]

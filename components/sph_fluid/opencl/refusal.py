@@ -8,8 +8,8 @@ from quintet.interfaces.errors import SceneError
 SUPPORTED = frozenset(
     """material spacing sound_speed fluid initial lost_limit remove_inside_bodies dimensions
     kernel smoothing staggered density gravity density_diffusion negative_pressure precision
-    integration courant gauges wave viscosity.artificial viscosity.form boundary.walls
-    boundary.open_faces boundary.wall_velocity boundary.obstacles boundary.meshes
+    integration courant gauges wave viscosity.artificial viscosity.kinematic viscosity.form
+    boundary.walls boundary.open_faces boundary.wall_velocity boundary.obstacles boundary.meshes
     boundary.wall_offset boundary.sample_depth boundary.wall_viscosity_factor
     boundary.lubrication_films boundary.roughness boundary.potential_stiffness
     boundary.potential_exponent""".split()
@@ -36,8 +36,7 @@ def refuse_what_needs_the_processor(params: SphFluidParams, device: str) -> None
 
 def limits(params: SphFluidParams) -> dict[str, tuple[object, bool, str, str]]:
     """Keys that a device limits: the value, whether it is wrong, what is right, what to do."""
-    edge, kinematic = params.boundary, params.viscosity.kinematic
-    rubs = params.mirrored and kinematic > 0.0 and edge.wall_viscosity_factor > 0.0
+    edge = params.boundary
     lists = {
         f"boundary.{name}": (len(getattr(edge, name)), bool(getattr(edge, name)), "empty")
         for name in ("symmetry", "periodic", "inflow", "outflow", "pistons", "damping")
@@ -49,7 +48,6 @@ def limits(params: SphFluidParams) -> dict[str, tuple[object, bool, str, str]]:
     changed = numbers | {
         "boundary.motion": ("a motion", edge.motion is not None, "left out"),
         "boundary.method": (edge.method, edge.method == "potential", "mdbc or dbc"),
-        "viscosity.kinematic": (kinematic, rubs, "0 with mirrored walls that rub"),
     }
     return {key: (*limit, "Remove them") for key, limit in lists.items()} | {
         key: (*limit, "Change it") for key, limit in changed.items()

@@ -1,5 +1,7 @@
 /* Loops over rows of a fluid in double precision: sorting, and samples that bodies move. */
 
+static double square_of(double3 d) { return d.x * d.x + d.y * d.y + d.z * d.z; }
+
 /* Extents, densities, and what is outside of the tank, for the sort by cells. */
 __kernel void survey(
     __global const double4 *position, int split, int walled, double4 low, double4 high,

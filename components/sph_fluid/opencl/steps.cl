@@ -3,8 +3,6 @@
    Fluid rows write into `extremes` the square of how far they went since lists were made, and of
    their speed where the scheme needs it; infinity where a step failed. */
 
-static double square_of(double3 d) { return d.x * d.x + d.y * d.y + d.z * d.z; }
-
 static double4 as_doubles(RATE4 rate) { return (double4)(rate.x, rate.y, rate.z, rate.w); }
 
 /* Write the density of a row, and p/rho^2; that of walls and samples is at least that at rest. */

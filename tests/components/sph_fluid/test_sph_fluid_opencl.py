@@ -93,6 +93,23 @@ def test_a_device_computes_as_the_processor_does(table, steps):
     assert np.abs(first["reference"] - second["reference"]).max() < 1e-13
 
 
+VISCOUS = {"viscosity": {"kinematic": 0.05}}
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        VISCOUS,
+        {"viscosity": {"kinematic": 0.05, "form": "stress"}, "precision": "float32"},
+    ],
+)
+def test_fluid_with_kinematic_viscosity_sticks_to_walls_as_on_the_processor(changes):
+    params = params_of(MIRRORED | changes)
+    processor, device = advanced(SphFluid(params), 60), advanced(DeviceFluid(params, DEVICE), 60)
+    limit = 1e-4 if "precision" in changes else 2e-7
+    assert difference(processor, device, "velocity") < limit
+
+
 @pytest.mark.parametrize("table", [MIRRORED, DYNAMIC | TWICE])
 def test_a_device_that_is_no_processor_gets_lists_by_columns_and_single_lanes(table, monkeypatch):
     monkeypatch.setattr(Device, "is_processor", property(lambda self: False))
@@ -199,10 +216,6 @@ REFUSED = {
     "boundary.symmetry": {"boundary": DYNAMIC["boundary"] | {"symmetry": ["y-"]}},
     "xsph": {"xsph": 0.5},
     "shepard_every": {"shepard_every": 20},
-    "viscosity.kinematic": {
-        "boundary": DYNAMIC["boundary"] | {"method": "mdbc"},
-        "viscosity": {"kinematic": 1e-3},
-    },
 }
 
 

@@ -119,6 +119,7 @@ CASES = [
     (FILMS, LOW, 1.0),
     (FILMS | {"boundary__lubrication_films": "auto"}, LOW, 1.0),
     (FILMS | {"integration": "symplectic"}, LOW, 1.0),
+    (MIRRORED | {"viscosity__kinematic": 0.05}, START, 1.0),
 ]
 
 
