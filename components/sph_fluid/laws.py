@@ -116,6 +116,18 @@ def pressure_term(density, constants):  # type: ignore[no-untyped-def]
 
 
 @njit(inline="always")
+def damped_pressure_term(density, minus_rho_div_u, strength, constants):  # type: ignore[no-untyped-def]
+    """p/ρ² [Pa m6/kg2], as if a strength [m2/s] times -ρ∇·u [kg/(m3 s)] were pressure too.
+
+    References
+    ----------
+    Sun et al., J. Comput. Phys. 483 (2023) 112056.
+    """
+    more = strength * minus_rho_div_u / (density * density)
+    return pressure_term(density, constants) + more
+
+
+@njit(inline="always")
 def inverses(r2, density_sum, constants):  # type: ignore[no-untyped-def]
     """1/r, 1/(r² + 0.01h²) and 1/(ρ_i + ρ_j), all by one division, the slowest operation here.
 

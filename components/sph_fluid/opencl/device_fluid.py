@@ -58,6 +58,7 @@ class DeviceFluid(Component):
         self.host = SphFluid(params, replace(resources, device="cpu"))
         self._refuse_other_parts(resources.device)
         self.stepping = Stepping(params, device, resources.threads, self.host.lists.reach)
+        self._speed = 0.0  # m/s, of the fastest fluid, where the scheme looks ahead by it
         self.host.make_film_rows = self.stepping.make_film_rows
         self._put()
 
@@ -67,10 +68,9 @@ class DeviceFluid(Component):
         pairs = (
             (host.damping, NoDamping), (host.pistons, NoPistons), (host.symmetry, NoSymmetry),
             (host.open_boundaries, NoOpenBoundaries), (host.frame, StillFrame),
-            (host.all_ranks, OneRank), (host.filter, type(None)),
+            (host.all_ranks, OneRank),
         )  # fmt: skip
         others = [type(part).__name__ for part, expected in pairs if type(part) is not expected]
-        others += [type(p).__name__ for p in host.pressure_parts if p is not host.boundary]
         if others:
             raise SceneError(
                 f"on device {device}, a fluid must have no parts that the processor alone "
@@ -115,6 +115,9 @@ class DeviceFluid(Component):
         if host.lists.need_rebuild(host.state, host.boundary, dt, self._speed):
             self._sort()
         state = host.state
+        if self.stepping.filter and host.filter and host.filter.is_due(state):
+            self.stepping.filter.apply()
+            self._is_read = False
         if state.steps % judgement.EVERY == 0:
             self._get()
             isolated = not len(host.samples.volume) and self.params.boundary.is_still
@@ -129,11 +132,12 @@ class DeviceFluid(Component):
         state.last_dt, state.steps = dt, state.steps + 1
 
     def _apply_forces(self, dt: float) -> None:
-        """Push the samples as they pushed the fluid."""
+        """Push the samples as they pushed the fluid; move the fluid with its neighbours (XSPH)."""
         host = self.host
         if len(host.samples.row):
             host.state.force = self.stepping.passes.push_samples()
             host.films.advance(host.state, host.lists.arrays, dt)
+        self.stepping.passes.move_with_neighbours(dt)
 
     def _sort(self) -> None:
         """Bring near rows together and list neighbours: on the host where fluid left the tank."""

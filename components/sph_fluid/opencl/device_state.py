@@ -12,7 +12,7 @@ from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.state import State, Whole
 
 # Arrays of `State` that are on the device, by the rows that they have.
-OF_ALL = ("position_density", "velocity_pressure", "previous_density_rate")
+OF_ALL = ("position_density", "velocity_pressure", "previous_density_rate", "minus_rho_div_u")
 OF_FLUID = ("identity", "acceleration")
 OF_BOUNDARY = ("mirror_point", "sample")
 
@@ -87,7 +87,8 @@ class DeviceState:
     def get_boundary(self, state: State) -> None:
         """Copy the rows of the boundary into a host's state; those of the fluid are left."""
         for name in OF_ALL:
-            getattr(state, name)[self.split :] = self.arrays[name].get(self.split)
+            if self.arrays[name].shape[0]:
+                getattr(state, name)[self.split :] = self.arrays[name].get(self.split)
         for name in OF_BOUNDARY:
             setattr(state, name, self.arrays[name].get())
         state.reference[self.split :] = self.reference.get(self.split)

@@ -1,6 +1,6 @@
 /* Accelerations and rates of density, summed over pairs; laws and structs are printed.
 
-   DIFFUSION is defined where a scene has it; VOLUME where particles of the boundary have volumes of
+   DIFFUSION, XSPH and DAMPER are defined where a scene has them; VOLUME where particles of the boundary have volumes of
    their own, over that of a particle of the fluid; APPARENT where these have velocities of their own
    that kinematic viscosity sees. */
 
@@ -63,7 +63,8 @@ __kernel void rates(
     __global const int *near, __global const int *middle, __global const int *end,
     long row_stride, long item_stride, Constants constants, FluidTerms fluid,
     BoundaryTerms boundary, real4 gravity, __global const real *volume,
-    __global const real4 *apparent, __global real4 *rate, __global double4 *extremes)
+    __global const real4 *apparent, __global real4 *rate, __global double *drift,
+    __global double *minus_rho_div_u, __global double4 *extremes)
 {
     const int i = get_global_id(0);
     if (i >= count) return;
@@ -75,19 +76,31 @@ __kernel void rates(
         const real sum = continuity(
             i, last, r, u, position, velocity, near, place, item_stride, far, constants);
         rate[i] = (real4)(0, 0, 0, sum);
+#ifdef DAMPER
+        minus_rho_div_u[i] = sum;
+#endif
         extremes[i] = 0;
         return;
     }
     const tuple_3v own = {u.x, u.y, u.z};
     const real more = r.w + constants.base + constants.base;
     tuple_3v force = {0, 0, 0}, push = {0, 0, 0};
-    reals density_rate = 0, fastest = 0;
+    reals density_rate = 0, diffused = 0, fastest = 0;
+#ifdef XSPH
+    tuple_3v mean = {0, 0, 0};
+#endif
     for (int k = 0; k < turn; k += LANES) {
         PAIR(turn);
         FORCE(fluid_force, force, fluid, AS_IT_IS, other);
 #ifdef DIFFUSION
         const reals flux = diffusive_flux(density - r.w, dx, dy, dz, fluid.diffusion);
-        density_rate -= flux * slope * (r2 * per.f1 * per.f2);
+        diffused += flux * slope * (r2 * per.f1 * per.f2);
+#endif
+#ifdef XSPH
+        const reals weight = kernel_of(r2, constants.smoothing) * per.f2;
+        mean.f0 -= weight * (u.x - other.f0);
+        mean.f1 -= weight * (u.y - other.f1);
+        mean.f2 -= weight * (u.z - other.f2);
 #endif
     }
     for (int k = turn; k < last; k += LANES) {
@@ -98,7 +111,15 @@ __kernel void rates(
     const real x = constants.mass * (TOTAL(force.f0) + TOTAL(push.f0)) + gravity.x;
     const real y = constants.mass * (TOTAL(force.f1) + TOTAL(push.f1)) + gravity.y;
     const real z = constants.mass * (TOTAL(force.f2) + TOTAL(push.f2)) + gravity.z;
-    rate[i] = (real4)(x, y, z, constants.mass * TOTAL(density_rate));
+    const real compression = TOTAL(density_rate);
+    rate[i] = (real4)(x, y, z, constants.mass * (compression - TOTAL(diffused)));
+#ifdef DAMPER
+    minus_rho_div_u[i] = constants.mass * compression;
+#endif
+#ifdef XSPH
+    const double twice = 2 * constants.mass;
+    vstore3(twice * (double3)(TOTAL(mean.f0), TOTAL(mean.f1), TOTAL(mean.f2)), i, drift);
+#endif
     extremes[i] = (double4)(x * x + y * y + z * z, GREATEST(fastest), 0, 0);
 }
 

@@ -1,7 +1,7 @@
 """Passes over the pairs of a fluid on a device, and what walls and samples have before them."""
 
 import math
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -15,6 +15,9 @@ from quintet.components.sph_fluid.opencl.device_state import DeviceState
 from quintet.components.sph_fluid.opencl.programs import pairs_program
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.state import Array
+
+if TYPE_CHECKING:
+    from quintet.components.sph_fluid.opencl.damper import DeviceDamper
 
 
 class Passes:
@@ -43,6 +46,9 @@ class Passes:
         rubs = params.viscosity.kinematic > 0.0 and params.boundary.wall_viscosity_factor > 0.0
         self._has_apparent = params.mirrored and rubs
         self._apparent: DeviceArray | None = None
+        self._drift: DeviceArray | None = None
+        self._move_by, self._drifts = kernels.move_by, params.xsph > 0.0
+        self._damper = damper(params, kernels, rows)
         self._real = np.float64 if precision == "double" else np.float32
         self._constants = bytes_of(pair_law(params).constants, np.float64)
         self._gravity = np.array([*params.gravity, 0.0], self._real)
@@ -72,6 +78,8 @@ class Passes:
         if self._has_apparent:
             # Lanes behind the end of a list read rows of the fluid: they must be finite.
             self._apparent = DeviceArray.of(self.queue, np.zeros(shape, self._real))
+        if self._drifts:
+            self._drift = DeviceArray(self.queue, (self.rows.split, 3))
         if self.precision == "single":
             self._copies = [DeviceArray(self.queue, shape, self._real) for _ in range(2)]
 
@@ -104,6 +112,8 @@ class Passes:
                 rows.arrays["sample"], rows.position, rows.velocity, lists.near, lists.end,
                 *strides, self._rest_gradient, self._constants,
             )  # fmt: skip
+        if self._damper:
+            self._damper.write_pressure(self.moving)
         if self._has_apparent:
             run(
                 self.queue, self._mirror_velocity, rows.count - rows.split, split, count,
@@ -114,7 +124,8 @@ class Passes:
         run(
             self.queue, self._rates, self.moving, split, np.int32(self.moving), *self._particles,
             lists.near, lists.middle, lists.end, *strides, *self._law, self._gravity,
-            self._volume, self._apparent, self.rate, rows.extremes,
+            self._volume, self._apparent, self.rate, self._drift,
+            rows.arrays["minus_rho_div_u"], rows.extremes,
         )  # fmt: skip
 
     def push_samples(self) -> Array:
@@ -129,6 +140,13 @@ class Passes:
         )  # fmt: skip
         return np.asarray(self.force.get()[:, :3])
 
+    def move_with_neighbours(self, dt: float) -> None:
+        """XSPH: move with the neighbours' mean velocity in a step of dt [s]."""
+        if self._drifts:
+            split, time = self.rows.split, np.float64(self.params.xsph * dt)
+            position = self.rows.position
+            run(self.queue, self._move_by, split, np.int32(split), time, self._drift, position)
+
     def _in_precision(self) -> tuple[DeviceArray, DeviceArray]:
         """Positions and velocities in the precision of pairs."""
         rows = self.rows
@@ -141,3 +159,13 @@ class Passes:
         ):
             run(self.queue, self._narrow, rows.count, source, np.int32(rows.count), origin, copy)
         return position, velocity
+
+
+def damper(params: SphFluidParams, kernels: Any, rows: DeviceState) -> "DeviceDamper | None":
+    """A damper of sound."""
+    if params.acoustic_damper == 0.0:
+        return None
+    # Left out of scenes without a damper.
+    from quintet.components.sph_fluid.opencl.damper import DeviceDamper
+
+    return DeviceDamper(params, kernels, rows)

@@ -13,13 +13,14 @@ from quintet.components.sph_fluid.integration.kernels import failed
 from quintet.components.sph_fluid.laws import (
     PairLaw,
     add_pair_force,
+    damped_pressure_term,
     diffusive_flux,
     inverses,
     pressure_term,
 )
 
 HERE = Path(__file__).parent
-OF_ROWS = ("rows", "boundary", "films", "steps")
+OF_ROWS = ("rows", "boundary", "films", "terms", "steps")
 VECTOR = (0.0, 0.0, 0.0)
 SIX, TEN = (0.0,) * 6, (0.0,) * 10
 
@@ -35,6 +36,7 @@ def rows_program(law: PairLaw, precision: Precision, lanes: int) -> str:
     names = [
         f"#define LANES {lanes}",
         _named(program, "pressure_term", pressure_term, 0.0, constants),
+        _named(program, "damped_pressure_term", damped_pressure_term, 0.0, 0.0, 0.0, constants),
         _named(program, "kernel_of", kernel, 0.0, constants.smoothing),
         _named(program, "failed", failed, 0.0, 0.0, 0.0),
         _named(program, "kernel_in_lanes", kernel, LANES, constants.smoothing),
@@ -70,6 +72,11 @@ def pairs_program(law: PairLaw, precision: Precision, lanes: int, apparent: bool
         names.append("#define VOLUME")
     if apparent:
         names.append("#define APPARENT")
+    if law.damper is not None:
+        names.append("#define DAMPER")
+    if law.fluid.xsph is not None:
+        weight = (LANES, constants.smoothing)
+        names += ["#define XSPH", _named(program, "kernel_of", kernel, *weight)]
     if law.fluid.diffusion.on is not None:
         flux = (*(LANES,) * 4, law.fluid.diffusion)
         names += ["#define DIFFUSION", _named(program, "diffusive_flux", diffusive_flux, *flux)]

@@ -6,13 +6,13 @@ from quintet.interfaces.errors import SceneError
 # Every key of a fluid stands here, in `SUPPORTED`, or in the table of `mistakes`: a test sees to it
 # that one added later is not ignored in silence.
 SUPPORTED = frozenset(
-    """material spacing sound_speed fluid initial lost_limit remove_inside_bodies dimensions
-    kernel smoothing staggered density gravity density_diffusion negative_pressure precision
-    integration courant gauges wave viscosity.artificial viscosity.kinematic viscosity.form
-    boundary.walls boundary.open_faces boundary.wall_velocity boundary.obstacles boundary.meshes
-    boundary.wall_offset boundary.sample_depth boundary.wall_viscosity_factor
-    boundary.lubrication_films boundary.roughness boundary.potential_stiffness
-    boundary.potential_exponent""".split()
+    """material xsph shepard_every acoustic_damper spacing sound_speed fluid initial lost_limit
+    remove_inside_bodies dimensions kernel smoothing staggered density gravity density_diffusion
+    negative_pressure precision integration courant gauges wave viscosity.artificial
+    viscosity.kinematic viscosity.form boundary.walls boundary.open_faces boundary.wall_velocity
+    boundary.obstacles boundary.meshes boundary.wall_offset boundary.sample_depth
+    boundary.wall_viscosity_factor boundary.lubrication_films boundary.roughness
+    boundary.potential_stiffness boundary.potential_exponent""".split()
 )
 
 
@@ -41,11 +41,7 @@ def limits(params: SphFluidParams) -> dict[str, tuple[object, bool, str, str]]:
         f"boundary.{name}": (len(getattr(edge, name)), bool(getattr(edge, name)), "empty")
         for name in ("symmetry", "periodic", "inflow", "outflow", "pistons", "damping")
     }
-    numbers = {
-        name: (getattr(params, name), getattr(params, name) > 0, "0")
-        for name in ("xsph", "shepard_every", "acoustic_damper")
-    }
-    changed = numbers | {
+    changed = {
         "boundary.motion": ("a motion", edge.motion is not None, "left out"),
         "boundary.method": (edge.method, edge.method == "potential", "mdbc or dbc"),
     }

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -20,6 +20,7 @@ from quintet.components.sph_fluid.state import State
 if TYPE_CHECKING:
     from quintet.components.sph_fluid.boundary.film_geometry import Faces, Films
     from quintet.components.sph_fluid.opencl.film_rows import DeviceFilmRows
+    from quintet.components.sph_fluid.opencl.shepard_filter import DeviceFilter
 
 LANES_OF_PROCESSORS = 4  # doubles in one of its vectors; other devices make lanes of rows
 
@@ -56,6 +57,7 @@ class Stepping:
         self.rows = DeviceState(self.queue, kernels, params, reach, device.is_processor)
         self.passes = Passes(params, lanes, kernels, self.rows, precision)
         self._scheme = scheme(params, kernels, self.rows, self.passes)
+        self.filter = shepard_filter(params, kernels, self.rows)
 
     def step(self, state: State, dt: float, apply_forces: Callable[[], None]) -> Extremes:
         """Advance the rows by dt [s]; `state` tells of the last step.
@@ -74,3 +76,15 @@ class Stepping:
         from quintet.components.sph_fluid.opencl.film_rows import DeviceFilmRows
 
         return DeviceFilmRows(self._of_films, self.rows, films, faces, ranks)
+
+
+def shepard_filter(
+    params: SphFluidParams, kernels: Any, rows: DeviceState
+) -> "DeviceFilter | None":
+    """A filter of the density."""
+    if not params.shepard_every:
+        return None
+    # Left out of scenes without a filter.
+    from quintet.components.sph_fluid.opencl.shepard_filter import DeviceFilter
+
+    return DeviceFilter(params, kernels, rows)

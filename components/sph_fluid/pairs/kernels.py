@@ -12,6 +12,7 @@ from quintet.components.sph_fluid.laws import (
     PairLaw,
     add_pair_force,
     contact_factor,
+    damped_pressure_term,
     inverses,
     pressure_term,
 )
@@ -25,16 +26,11 @@ def write_damped_pressure(
     first: int, last: int, strength: float, minus_rho_div_u: Array, position: Array,
     velocity: Array, constants: Constants,
 ) -> None:  # fmt: skip
-    """Write p/ρ² of rows [first, last) as if strength [m2/s] · -ρ∇·u [kg/(m3 s)] were pressure.
-
-    References
-    ----------
-    Sun et al., J. Comput. Phys. 483 (2023) 112056.
-    """
+    """Write p/ρ² of rows [first, last) as if strength [m2/s] · -ρ∇·u [kg/(m3 s)] were pressure."""
     for i in range(first, last):
-        density = position[i, 3]
-        more = strength * minus_rho_div_u[i] / (density * density)
-        velocity[i, 3] = pressure_term(density, constants) + more
+        velocity[i, 3] = damped_pressure_term(
+            position[i, 3], minus_rho_div_u[i], strength, constants
+        )
 
 
 @njit(**FAST)

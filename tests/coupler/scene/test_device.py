@@ -102,8 +102,8 @@ def test_a_device_of_another_name_is_refused_where_it_is_resolved(name):
 
 
 def test_check_refuses_what_the_run_on_a_device_would():
-    with pytest.raises(SceneError, match=r"water.*on device opencl, xsph must be 0; found 0.5"):
-        scene("still_water", "water", "opencl", xsph=0.5)
+    with pytest.raises(SceneError, match=r"water.*on device opencl, boundary.method must be"):
+        scene("still_water", "water", "opencl", **{"boundary.method": "potential"})
 
 
 @pytest.mark.skipif(not importlib.util.find_spec("pyopencl"), reason="needs pyopencl")

@@ -97,6 +97,7 @@ LAWS = [
     Law(fluid.tait, (DENSITY, CONSTANTS)),
     Law(fluid.tait, (DENSITY, CALM), name=" below zero"),
     Law(fluid.pressure_term, (DENSITY, CALM)),
+    Law(fluid.damped_pressure_term, (DENSITY, ANY, PART, CALM)),
     Law(fluid.inverses, (NEAR, DENSITY, CALM)),
     Law(fluid.pair_pressure, (ANY, ANY, PART, TERMS)),
     Law(fluid.diffusive_flux, (ANY, ANY, ANY, ANY, DIFFUSION)),
