@@ -1,6 +1,6 @@
 """The frame that a fluid is computed in: that of the world, or that of its moving tank."""
 
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
@@ -11,6 +11,9 @@ from quintet.components.sph_fluid.state import Array, State
 from quintet.interfaces.component import Fields
 from quintet.interfaces.params import Vector
 
+if TYPE_CHECKING:
+    from quintet.components.sph_fluid.motion.laws import FrameForces
+
 
 class Frame(Protocol):
     """What the forces of a step depend on beside the fluid itself."""
@@ -20,6 +23,10 @@ class Frame(Protocol):
 
     def weight_at(self, points: Array) -> Array:
         """Acceleration (n, 3) m/s2 that fluid at rest at points (n, 3) m is held against."""
+
+    @property
+    def forces(self) -> "FrameForces | None":
+        """What its own accelerations are made of at a time; None where it has none."""
 
     def set_time(self, later: float) -> None:
         """Set the forces to those at a time [s] after the begin of the step."""
@@ -50,6 +57,7 @@ class StillFrame:
     """The world's own."""
 
     work = 0.0
+    forces: "FrameForces | None" = None
 
     def __init__(self, params: SphFluidParams) -> None:
         self.gravity = np.array(params.gravity)

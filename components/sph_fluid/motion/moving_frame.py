@@ -21,6 +21,7 @@ from quintet.components.shared.threads import Team
 from quintet.components.sph_fluid.constants import constants
 from quintet.components.sph_fluid.laws import PairLaw
 from quintet.components.sph_fluid.motion.kernels import add_frame_acceleration
+from quintet.components.sph_fluid.motion.laws import FrameForces
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.ranks.method import Ranks
 from quintet.components.sph_fluid.setup.motion import Motion
@@ -76,6 +77,14 @@ class MovingFrame:
         x, y, z = self.weight_at(self.middle[np.newaxis])[0].tolist()
         self.rest_acceleration = x, y, z  # m/s2, of the middle of the tank
 
+    @property
+    def forces(self) -> FrameForces:
+        """What its accelerations are made of at that time."""
+        lead = self.later if self.rates_precede_middle else 0.0
+        uniform, turning = tuple(self.uniform.tolist()), tuple(self.turning.tolist())
+        x, y, z = (tuple(row) for row in self.gradient.tolist())
+        return FrameForces(lead, uniform, (x, y, z), turning)
+
     def law(self, law: PairLaw) -> PairLaw:
         """The pair law, with the density at rest rising as it does in the middle of the tank."""
         diffusion = law.fluid.diffusion
@@ -90,10 +99,8 @@ class MovingFrame:
         """Add the frame's own accelerations to the rates (n, 4); return the largest [m/s2]."""
         if len(self.power) != state.fluid:
             self.power = np.zeros(state.fluid)
-        lead = self.later if self.rates_precede_middle else 0.0
         arrays = (state.position_density, state.velocity_pressure, rate, self.power)
-        frame = (lead, self.uniform, self.gradient, self.turning)
-        squares = team.run(add_frame_acceleration, state.fluid, *frame, *arrays)
+        squares = team.run(add_frame_acceleration, state.fluid, self.forces, *arrays)
         return math.sqrt(max(squares))
 
     def count_work(self, state: State, dt: float) -> None:

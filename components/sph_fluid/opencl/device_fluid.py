@@ -20,7 +20,6 @@ from quintet.components.sph_fluid.boundary.no_pistons import NoPistons
 from quintet.components.sph_fluid.boundary.symmetry_planes import NoSymmetry
 from quintet.components.sph_fluid.component import LOADS, SphFluid
 from quintet.components.sph_fluid.mass_balance.losses import refuse_many_lost
-from quintet.components.sph_fluid.motion.frame import StillFrame
 from quintet.components.sph_fluid.open_boundaries.method import NoOpenBoundaries
 from quintet.components.sph_fluid.opencl.refusal import refuse_what_needs_the_processor
 from quintet.components.sph_fluid.opencl.stepping import Stepping
@@ -57,7 +56,8 @@ class DeviceFluid(Component):
         self.params, (self.takes, self.gives) = params, self.ports_of(params)
         self.host = SphFluid(params, replace(resources, device="cpu"))
         self._refuse_other_parts(resources.device)
-        self.stepping = Stepping(params, device, resources.threads, self.host.lists.reach)
+        parts = (self.host.lists.reach, self.host.frame)
+        self.stepping = Stepping(params, device, resources.threads, *parts)
         self._speed = 0.0  # m/s, of the fastest fluid, where the scheme looks ahead by it
         self.host.make_film_rows = self.stepping.make_film_rows
         self._put()
@@ -67,8 +67,7 @@ class DeviceFluid(Component):
         host = self.host
         pairs = (
             (host.damping, NoDamping), (host.pistons, NoPistons), (host.symmetry, NoSymmetry),
-            (host.open_boundaries, NoOpenBoundaries), (host.frame, StillFrame),
-            (host.all_ranks, OneRank),
+            (host.open_boundaries, NoOpenBoundaries), (host.all_ranks, OneRank),
         )  # fmt: skip
         others = [type(part).__name__ for part, expected in pairs if type(part) is not expected]
         if others:
@@ -130,6 +129,7 @@ class DeviceFluid(Component):
         state.moved, self._speed = extremes.moved, extremes.speed
         state.largest_acceleration, state.largest_approach = extremes[:2]
         state.last_dt, state.steps = dt, state.steps + 1
+        host.frame.advance(dt)
 
     def _apply_forces(self, dt: float) -> None:
         """Push the samples as they pushed the fluid; move the fluid with its neighbours (XSPH)."""
@@ -137,6 +137,8 @@ class DeviceFluid(Component):
         if len(host.samples.row):
             host.state.force = self.stepping.passes.push_samples()
             host.films.advance(host.state, host.lists.arrays, dt)
+        self.stepping.passes.read_power()
+        host.frame.count_work(host.state, dt)
         self.stepping.passes.move_with_neighbours(dt)
 
     def _sort(self) -> None:

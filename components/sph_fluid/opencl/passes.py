@@ -11,6 +11,8 @@ from quintet.components.shared.opencl.prelude import Precision
 from quintet.components.shared.opencl.types import bytes_of
 from quintet.components.shared.single_precision import rounded
 from quintet.components.sph_fluid.constants import pair_law
+from quintet.components.sph_fluid.laws import PairLaw
+from quintet.components.sph_fluid.motion.frame import Frame, StillFrame
 from quintet.components.sph_fluid.opencl.device_state import DeviceState
 from quintet.components.sph_fluid.opencl.programs import pairs_program
 from quintet.components.sph_fluid.params import SphFluidParams
@@ -18,6 +20,7 @@ from quintet.components.sph_fluid.state import Array
 
 if TYPE_CHECKING:
     from quintet.components.sph_fluid.opencl.damper import DeviceDamper
+    from quintet.components.sph_fluid.opencl.moving_frame import DeviceFrame
 
 
 class Passes:
@@ -33,13 +36,14 @@ class Passes:
     rows : DeviceState
     precision : "double" or "single"
         Of pairs.
+    frame : Frame
     """
 
     def __init__(
         self, params: SphFluidParams, lanes: int, kernels: Any, rows: DeviceState,
-        precision: Precision,
+        precision: Precision, frame: Frame,
     ) -> None:  # fmt: skip
-        self.params, self.rows, self.precision = params, rows, precision
+        self.params, self.rows, self.precision, self.frame = params, rows, precision, frame
         self.queue, self.lanes = rows.queue, lanes
         self._extrapolate, self._narrow = kernels.extrapolate_density, kernels.narrow
         self._mirror_velocity = kernels.mirror_velocity
@@ -49,11 +53,10 @@ class Passes:
         self._drift: DeviceArray | None = None
         self._move_by, self._drifts = kernels.move_by, params.xsph > 0.0
         self._damper = damper(params, kernels, rows)
+        self._moving_frame = moving_frame(frame, kernels, rows)
         self._real = np.float64 if precision == "double" else np.float32
         self._constants = bytes_of(pair_law(params).constants, np.float64)
         self._gravity = np.array([*params.gravity, 0.0], self._real)
-        gravity = math.hypot(*params.hydrostatic_gravity)
-        self._rest_gradient = np.float64(params.density * gravity / params.sound_speed**2)
         self._build(own_volume=False)
 
     def _build(self, own_volume: bool) -> None:
@@ -67,8 +70,12 @@ class Passes:
             # Densities are counted from that at no pressure, as `SinglePrecision` counts them.
             constants = law.constants._replace(base=law.constants.density)
             law = rounded(law._replace(constants=constants))
+        self._law, self._structs = law, self._structs_of(law)
+
+    def _structs_of(self, law: PairLaw) -> tuple[Any, ...]:
+        """Numbers of a pair law as structs: constants, terms of the fluid and the boundary."""
         terms = (law.constants, law.fluid, law.boundary)
-        self._law = tuple(bytes_of(each, self._real) for each in terms)
+        return tuple(bytes_of(each, self._real) for each in terms)
 
     def resize(self) -> None:
         """Make room for a state that was copied to the device."""
@@ -78,6 +85,8 @@ class Passes:
         if self._has_apparent:
             # Lanes behind the end of a list read rows of the fluid: they must be finite.
             self._apparent = DeviceArray.of(self.queue, np.zeros(shape, self._real))
+        if self._moving_frame:
+            self._moving_frame.resize()
         if self._drifts:
             self._drift = DeviceArray(self.queue, (self.rows.split, 3))
         if self.precision == "single":
@@ -101,16 +110,37 @@ class Passes:
         """Rows whose density obeys the equation of continuity, from the first on."""
         return self.rows.split if self.params.mirrored else self.rows.count
 
-    def compute(self) -> None:
-        """Write accelerations and rates of density, of the state as it is."""
+    def compute(self, later: float) -> None:
+        """Write accelerations and rates of density, of the state as it is.
+
+        Outer forces are those at a time [s] after the begin of the step.
+        """
+        self.frame.set_time(later)
+        self._write_boundary()
+        rows, lists, law = self.rows, self.rows.lists, self.frame.law(self._law)
+        structs = self._structs if law is self._law else self._structs_of(law)
+        self._particles = self._in_precision()
+        run(
+            self.queue, self._rates, self.moving, np.int32(rows.split), np.int32(self.moving),
+            *self._particles, lists.near, lists.middle, lists.end, lists.row_stride,
+            lists.item_stride, *structs, self._gravity, self._volume, self._apparent, self.rate,
+            self._drift, rows.arrays["minus_rho_div_u"], rows.extremes,
+        )  # fmt: skip
+        if self._moving_frame:
+            self._moving_frame.accelerate(self.rate)
+
+    def _write_boundary(self) -> None:
+        """Write pressures, and velocities that viscosity sees, before a pass over pairs."""
         rows, lists = self.rows, self.rows.lists
         strides = (lists.row_stride, lists.item_stride)
         split, count = np.int32(rows.split), np.int32(rows.count)
         if self.params.mirrored:
+            gravity = math.hypot(*self.frame.rest_acceleration)
+            rest_gradient = self.params.density * gravity / self.params.sound_speed**2
             run(
                 self.queue, self._extrapolate, rows.count - rows.split, split, count, rows.mirror,
                 rows.arrays["sample"], rows.position, rows.velocity, lists.near, lists.end,
-                *strides, self._rest_gradient, self._constants,
+                *strides, np.float64(rest_gradient), self._constants,
             )  # fmt: skip
         if self._damper:
             self._damper.write_pressure(self.moving)
@@ -120,18 +150,11 @@ class Passes:
                 rows.mirror, rows.position, rows.velocity, lists.near, lists.end, *strides,
                 self._constants, self._apparent,
             )  # fmt: skip
-        self._particles = self._in_precision()
-        run(
-            self.queue, self._rates, self.moving, split, np.int32(self.moving), *self._particles,
-            lists.near, lists.middle, lists.end, *strides, *self._law, self._gravity,
-            self._volume, self._apparent, self.rate, self._drift,
-            rows.arrays["minus_rho_div_u"], rows.extremes,
-        )  # fmt: skip
 
     def push_samples(self) -> Array:
         """Forces (samples, 3) N on samples: minus those of the last pass on the fluid."""
         rows, lists = self.rows, self.rows.lists
-        constants, _, boundary = self._law
+        constants, _, boundary = self._structs
         numbers = (np.int32(rows.samples), rows.row, np.int32(rows.first_listed))
         run(
             self.queue, self._sample_forces, rows.samples, *numbers, *self._particles,
@@ -139,6 +162,11 @@ class Passes:
             self._volume, self._apparent, self.force,
         )  # fmt: skip
         return np.asarray(self.force.get()[:, :3])
+
+    def read_power(self) -> None:
+        """Let a frame that moves count its work in the last pass."""
+        if self._moving_frame:
+            self._moving_frame.read_power()
 
     def move_with_neighbours(self, dt: float) -> None:
         """XSPH: move with the neighbours' mean velocity in a step of dt [s]."""
@@ -169,3 +197,15 @@ def damper(params: SphFluidParams, kernels: Any, rows: DeviceState) -> "DeviceDa
     from quintet.components.sph_fluid.opencl.damper import DeviceDamper
 
     return DeviceDamper(params, kernels, rows)
+
+
+def moving_frame(frame: Frame, kernels: Any, rows: DeviceState) -> "DeviceFrame | None":
+    """The frame of a tank that moves."""
+    if isinstance(frame, StillFrame):
+        return None
+    # Left out of scenes whose tank stands still.
+    from quintet.components.sph_fluid.motion.moving_frame import MovingFrame
+    from quintet.components.sph_fluid.opencl.moving_frame import DeviceFrame
+
+    assert isinstance(frame, MovingFrame)
+    return DeviceFrame(frame, kernels, rows)

@@ -1,7 +1,7 @@
 """Programs of a fluid: its laws, printed for the terms that a scene has, and loops over them."""
 
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from quintet.components.shared.opencl import cells
 from quintet.components.shared.opencl.prelude import Precision
@@ -19,16 +19,22 @@ from quintet.components.sph_fluid.laws import (
     pressure_term,
 )
 
+if TYPE_CHECKING:
+    from quintet.components.sph_fluid.motion.laws import FrameForces
+
 HERE = Path(__file__).parent
 OF_ROWS = ("rows", "boundary", "films", "terms", "steps")
 VECTOR = (0.0, 0.0, 0.0)
 SIX, TEN = (0.0,) * 6, (0.0,) * 10
 
 
-def rows_program(law: PairLaw, precision: Precision, lanes: int) -> str:
+def rows_program(
+    law: PairLaw, precision: Precision, lanes: int, forces: "FrameForces | None" = None
+) -> str:
     """Sorting, searching, the boundary and steps: always in double precision.
 
-    `precision` is that of the rates, of which steps are made.
+    `precision` is that of the rates, of which steps are made; `forces` are those of a frame that
+    moves.
     """
     program, constants = Program("double", lanes), law.constants
     search = cells.source(program)
@@ -49,7 +55,18 @@ def rows_program(law: PairLaw, precision: Precision, lanes: int) -> str:
         f"#define NO_FLUID {fit.NO_FLUID!r}",
         f"#define RATE4 {'double4' if precision == 'double' else 'float4'}",
     ]
-    return "\n".join([program.text, *names, search, *_sources("lanes", *OF_ROWS)])
+    sources = [*OF_ROWS]
+    if forces is not None:
+        # Left out of scenes whose tank stands still.
+        from quintet.components.sph_fluid.motion.laws import frame_acceleration
+
+        of_frame = (VECTOR, VECTOR, VECTOR, forces)
+        names += [
+            _named(program, "frame_acceleration", frame_acceleration, *of_frame),
+            f"#define InFrame {program.add(frame_acceleration, *of_frame)[1].name}",
+        ]
+        sources.append("frame")
+    return "\n".join([program.text, *names, search, *_sources("lanes", *sources)])
 
 
 def pairs_program(law: PairLaw, precision: Precision, lanes: int, apparent: bool = False) -> str:

@@ -10,9 +10,9 @@ SUPPORTED = frozenset(
     remove_inside_bodies dimensions kernel smoothing staggered density gravity density_diffusion
     negative_pressure precision integration courant gauges wave viscosity.artificial
     viscosity.kinematic viscosity.form boundary.walls boundary.open_faces boundary.wall_velocity
-    boundary.obstacles boundary.meshes boundary.wall_offset boundary.sample_depth
-    boundary.wall_viscosity_factor boundary.lubrication_films boundary.roughness
-    boundary.potential_stiffness boundary.potential_exponent""".split()
+    boundary.obstacles boundary.meshes boundary.motion boundary.wall_offset
+    boundary.sample_depth boundary.wall_viscosity_factor boundary.lubrication_films
+    boundary.roughness boundary.potential_stiffness boundary.potential_exponent""".split()
 )
 
 
@@ -42,7 +42,6 @@ def limits(params: SphFluidParams) -> dict[str, tuple[object, bool, str, str]]:
         for name in ("symmetry", "periodic", "inflow", "outflow", "pistons", "damping")
     }
     changed = {
-        "boundary.motion": ("a motion", edge.motion is not None, "left out"),
         "boundary.method": (edge.method, edge.method == "potential", "mdbc or dbc"),
     }
     return {key: (*limit, "Remove them") for key, limit in lists.items()} | {

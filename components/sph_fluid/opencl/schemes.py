@@ -39,7 +39,7 @@ class DeviceExtrapolated:
     def step(self, dt: float, last: float, apply_forces: Callable[[], None]) -> None:
         """Advance the rows by a step."""
         rows, passes = self.rows, self.passes
-        passes.compute()
+        passes.compute(0.5 * dt)
         apply_forces()
         ahead = AHEAD * min(dt / last, 2.0) if last > 0.0 else 0.0
         numbers = map(np.float64, (dt, ahead, self.furthest))
@@ -68,7 +68,7 @@ class DevicePositionVerlet:
         places = rows.position, rows.velocity
         previous = rows.arrays["previous_density_rate"]
         if rows.make_acceleration():
-            passes.compute()
+            passes.compute(0.0)
             acceleration = rows.arrays["acceleration"]
             run(queue, self._begin, moving, split, count, passes.rate, previous, acceleration)
         acceleration = rows.arrays["acceleration"]
@@ -78,10 +78,10 @@ class DevicePositionVerlet:
             queue, self._half_step, moving, *numbers, self._constants, *places, previous,
             acceleration,
         )  # fmt: skip
-        passes.compute()
+        passes.compute(0.5 * dt)
         apply_forces()
         run(queue, self._kick, rows.split, split, duration, *rates, acceleration)
-        passes.compute()
+        passes.compute(dt)
         run(
             queue, self._finish, moving, *numbers, self.furthest, self._constants, *rates,
             previous, acceleration, rows.reference, rows.extremes,

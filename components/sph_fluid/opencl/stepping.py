@@ -9,6 +9,7 @@ import numpy as np
 from quintet.components.shared.opencl.devices import Device, build
 from quintet.components.shared.opencl.prelude import Precision
 from quintet.components.sph_fluid.constants import pair_law
+from quintet.components.sph_fluid.motion.frame import Frame
 from quintet.components.sph_fluid.opencl.device_state import DeviceState
 from quintet.components.sph_fluid.opencl.passes import Passes
 from quintet.components.sph_fluid.opencl.programs import rows_program
@@ -46,16 +47,20 @@ class Stepping:
         Of the processor, where it is the device.
     reach : float, m
         Of the neighbour lists.
+    frame : Frame
+        In which the fluid is computed.
     """
 
-    def __init__(self, params: SphFluidParams, device: Device, threads: int, reach: float) -> None:
+    def __init__(
+        self, params: SphFluidParams, device: Device, threads: int, reach: float, frame: Frame
+    ) -> None:
         self.params, self.queue = params, device.queue(threads)
         precision: Precision = "double" if params.precision == "float64" else "single"
         law, lanes = pair_law(params), LANES_OF_PROCESSORS if device.is_processor else 1
-        kernels = build(self.queue, rows_program(law, precision, lanes))
+        kernels = build(self.queue, rows_program(law, precision, lanes, frame.forces))
         self._of_films = kernels.film_sides, kernels.fluid_share
         self.rows = DeviceState(self.queue, kernels, params, reach, device.is_processor)
-        self.passes = Passes(params, lanes, kernels, self.rows, precision)
+        self.passes = Passes(params, lanes, kernels, self.rows, precision, frame)
         self._scheme = scheme(params, kernels, self.rows, self.passes)
         self.filter = shepard_filter(params, kernels, self.rows)
 

@@ -2,15 +2,14 @@
 
 import subprocess
 import sys
-from copy import deepcopy
 from dataclasses import fields
 
 import numpy as np
 import pytest
-from fluid_params import fluid_params
+from device_fluids import DEVICE, DYNAMIC, MIRRORED, TWICE, advanced, difference, params_of
 
 from quintet.components.sph_fluid.component import SphFluid
-from quintet.components.sph_fluid.conform import CHANNEL, PUSHED, ROLLING
+from quintet.components.sph_fluid.conform import CHANNEL, PUSHED
 from quintet.components.sph_fluid.pairs.interaction import relative_wall_volume
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.setup.boundary import Boundary
@@ -27,51 +26,6 @@ from quintet.components.sph_fluid.opencl.refusal import (
     limits,
     refuse_what_needs_the_processor,
 )
-
-MIRRORED = {
-    "spacing": 0.05,
-    "sound_speed": 20.0,
-    "dimensions": 2,
-    "kernel": "wendland",
-    "density_diffusion": 0.1,
-    "negative_pressure": True,
-    "fluid": [{"shape": "box", "lowest": [0.0, 0.0, 0.0], "highest": [0.3, 1.0, 0.4]}],
-    "viscosity": {"artificial": 0.1},
-    "boundary": {
-        "method": "mdbc",
-        "walls": {"lowest": [0.0, 0.0, 0.0], "highest": [0.8, 1.0, 0.6]},
-    },
-    "gauges": {"front_gauge": "x", "motion_gauge": True, "pressure_gauges": [[0.1, 0.5, 0.1]]},
-}
-DYNAMIC = {
-    "spacing": 0.1,
-    "sound_speed": 40.0,
-    "fluid": [{"shape": "box", "lowest": [0.0, 0.0, 0.0], "highest": [0.5, 0.5, 0.5]}],
-    "viscosity": {"artificial": 0.1},
-    "boundary": {
-        "method": "dbc",
-        "walls": {"lowest": [0.0, 0.0, 0.0], "highest": [1.0, 0.5, 0.8]},
-    },
-}
-DEVICE = Resources(device="opencl")
-
-
-def params_of(table):
-    return fluid_params(**deepcopy(table))
-
-
-def advanced(fluid, steps):
-    for _ in range(steps):
-        fluid.step(fluid.stable_dt())
-    return fluid
-
-
-def difference(first, second, name):
-    a, b = first.view()[name], second.view()[name]
-    return np.abs(a - b).max() / np.abs(a).max()
-
-
-TWICE = {"integration": "symplectic", "courant": 0.4}
 
 
 @pytest.mark.parametrize(
@@ -92,51 +46,6 @@ def test_a_device_computes_as_the_processor_does(table, steps):
     assert first.keys() == second.keys()
     assert np.array_equal(first["identity"], second["identity"])  # sorted alike
     assert np.abs(first["reference"] - second["reference"]).max() < 1e-13
-
-
-DAMPED = {"acoustic_damper": 0.5, "integration": "symplectic"}
-TERMS = [
-    MIRRORED | DAMPED,
-    DYNAMIC | DAMPED | {"xsph": 0.3, "density_diffusion": 0.1},
-    MIRRORED | {"shepard_every": 7, "xsph": 0.5},
-]
-
-
-@pytest.mark.parametrize("table", TERMS)
-def test_terms_that_scenes_add_act_as_on_the_processor(table):
-    params = params_of(table)
-    processor, device = advanced(SphFluid(params), 60), advanced(DeviceFluid(params, DEVICE), 60)
-    assert difference(processor, device, "points") < 1e-13
-    first, second = processor.save(), device.save()
-    for key in ("position_density", "minus_rho_div_u"):
-        largest = np.abs(first[key]).max(initial=1e-300)
-        assert np.abs(first[key] - second[key]).max(initial=0.0) < 1e-10 * largest, key
-
-
-def test_a_damped_fluid_goes_on_from_a_snapshot_with_the_same_bits():
-    params = params_of(TERMS[1])
-    device, other = DeviceFluid(params, DEVICE), DeviceFluid(params, DEVICE)
-    other.load(advanced(device, 20).save())
-    first, second = advanced(device, 20).save(), advanced(other, 20).save()
-    for key, array in first.items():
-        assert np.array_equal(array, second[key], equal_nan=True), key
-
-
-VISCOUS = {"viscosity": {"kinematic": 0.05}}
-
-
-@pytest.mark.parametrize(
-    "changes",
-    [
-        VISCOUS,
-        {"viscosity": {"kinematic": 0.05, "form": "stress"}, "precision": "float32"},
-    ],
-)
-def test_fluid_with_kinematic_viscosity_sticks_to_walls_as_on_the_processor(changes):
-    params = params_of(MIRRORED | changes)
-    processor, device = advanced(SphFluid(params), 60), advanced(DeviceFluid(params, DEVICE), 60)
-    limit = 1e-4 if "precision" in changes else 2e-7
-    assert difference(processor, device, "velocity") < limit
 
 
 @pytest.mark.parametrize("table", [MIRRORED, DYNAMIC | TWICE])
@@ -246,7 +155,6 @@ REFUSED = {
     "boundary.method": {"boundary": DYNAMIC["boundary"] | {"method": "potential"}},
     "boundary.symmetry": {"boundary": DYNAMIC["boundary"] | {"symmetry": ["y-"]}},
     "boundary.periodic": {"boundary": WALLED | {"periodic": ["x"]}, "gravity": [1.0, 0.0, 0.0]},
-    "boundary.motion": {"boundary": DYNAMIC["boundary"] | {"motion": ROLLING["motion"]}},
     "boundary.pistons": {"boundary": DYNAMIC["boundary"] | {"pistons": PUSHED["pistons"]}},
     "boundary.inflow": CHANNEL,
     "boundary.outflow": CHANNEL,

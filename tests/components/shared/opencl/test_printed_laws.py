@@ -44,6 +44,7 @@ from quintet.components.shared.smoothing import smoothing as smooth
 from quintet.components.sph_fluid import laws as fluid
 from quintet.components.sph_fluid.boundary.kernels import mirrored_density as mirrored
 from quintet.components.sph_fluid.integration.kernels import failed
+from quintet.components.sph_fluid.motion import laws as motion
 from quintet.components.sph_solid import laws as solid
 
 ANY, PART, LARGE = Between(-1.0, 1.0), Between(0.01, 1.0), Between(0.5, 2.0)
@@ -80,6 +81,7 @@ TOUCHING = (
     PART,
 )  # fmt: skip
 
+FORCES = motion.FrameForces(1e-3, vector(9.0), (vector(9.0), vector(9.0), vector(9.0)), vector(9.0))
 LAWS = [
     Law(cubic_spline.shape, (Between(0.0, 2.5),)),
     Law(cubic_spline.slope, (Between(0.0, 2.5),)),
@@ -97,6 +99,9 @@ LAWS = [
     Law(fluid.tait, (DENSITY, CONSTANTS)),
     Law(fluid.tait, (DENSITY, CALM), name=" below zero"),
     Law(fluid.pressure_term, (DENSITY, CALM)),
+    Law(motion.cross, (vector(9.0), vector(9.0))),
+    Law(motion.later, (vector(9.0), vector(9.0), vector(9.0), PART)),
+    Law(motion.frame_acceleration, (vector(9.0), vector(9.0), vector(9.0), FORCES)),
     Law(fluid.damped_pressure_term, (DENSITY, ANY, PART, CALM)),
     Law(fluid.inverses, (NEAR, DENSITY, CALM)),
     Law(fluid.pair_pressure, (ANY, ANY, PART, TERMS)),

@@ -1,0 +1,84 @@
+"""Terms that scenes add to a fluid on an OpenCL device act as on the processor."""
+
+import numpy as np
+import pytest
+from device_fluids import DEVICE, DYNAMIC, MIRRORED, TWICE, advanced, difference, params_of
+
+from quintet.components.sph_fluid.component import SphFluid
+from quintet.components.sph_fluid.conform import ROLLING
+
+pytest.importorskip("pyopencl")
+from quintet.components.sph_fluid.opencl.device_fluid import DeviceFluid
+
+DAMPED = {"acoustic_damper": 0.5, "integration": "symplectic"}
+TERMS = [
+    MIRRORED | DAMPED,
+    DYNAMIC | DAMPED | {"xsph": 0.3, "density_diffusion": 0.1},
+    MIRRORED | {"shepard_every": 7, "xsph": 0.5},
+]
+
+
+@pytest.mark.parametrize("table", TERMS)
+def test_terms_that_scenes_add_act_as_on_the_processor(table):
+    params = params_of(table)
+    processor, device = advanced(SphFluid(params), 60), advanced(DeviceFluid(params, DEVICE), 60)
+    assert difference(processor, device, "points") < 1e-13
+    first, second = processor.save(), device.save()
+    for key in ("position_density", "minus_rho_div_u"):
+        largest = np.abs(first[key]).max(initial=1e-300)
+        assert np.abs(first[key] - second[key]).max(initial=0.0) < 1e-10 * largest, key
+
+
+def test_a_damped_fluid_goes_on_from_a_snapshot_with_the_same_bits():
+    params = params_of(TERMS[1])
+    device, other = DeviceFluid(params, DEVICE), DeviceFluid(params, DEVICE)
+    other.load(advanced(device, 20).save())
+    first, second = advanced(device, 20).save(), advanced(other, 20).save()
+    for key, array in first.items():
+        assert np.array_equal(array, second[key], equal_nan=True), key
+
+
+ROLLED = {"motion": ROLLING["motion"] | {"amplitude": [0.05, 0.0, 0.0]}}
+
+
+@pytest.mark.parametrize(
+    "table",
+    [
+        MIRRORED | {"boundary": MIRRORED["boundary"] | ROLLED},
+        DYNAMIC | TWICE | {"boundary": DYNAMIC["boundary"] | ROLLED},
+        pytest.param(
+            MIRRORED | TWICE | {"boundary": MIRRORED["boundary"] | ROLLED, "precision": "float32"},
+            marks=pytest.mark.full,
+        ),
+    ],
+)
+def test_tanks_move_as_on_the_processor(table):
+    params = params_of(table)
+    processor, device = advanced(SphFluid(params), 80), advanced(DeviceFluid(params, DEVICE), 80)
+    limit = 1e-5 if "precision" in table else 1e-12
+    assert difference(processor, device, "points") < limit
+    first, second = processor.save()["motion"], device.save()["motion"]
+    assert first[1] != 0.0  # work of the motion
+    assert second == pytest.approx(first, rel=1e-3 if "precision" in table else 1e-9)
+    other = DeviceFluid(params, DEVICE)
+    other.load(device.save())
+    one, again = advanced(device, 10).save(), advanced(other, 10).save()
+    for key, array in one.items():
+        assert np.array_equal(array, again[key], equal_nan=True), key
+
+
+VISCOUS = {"viscosity": {"kinematic": 0.05}}
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        VISCOUS,
+        {"viscosity": {"kinematic": 0.05, "form": "stress"}, "precision": "float32"},
+    ],
+)
+def test_fluid_with_kinematic_viscosity_sticks_to_walls_as_on_the_processor(changes):
+    params = params_of(MIRRORED | changes)
+    processor, device = advanced(SphFluid(params), 60), advanced(DeviceFluid(params, DEVICE), 60)
+    limit = 1e-4 if "precision" in changes else 2e-7
+    assert difference(processor, device, "velocity") < limit
