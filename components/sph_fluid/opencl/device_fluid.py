@@ -16,7 +16,6 @@ from quintet.components.shared.opencl.devices import device_of
 from quintet.components.shared.search.verlet_list import longest
 from quintet.components.sph_fluid import MANIFEST, diagnostics, judgement
 from quintet.components.sph_fluid.boundary.method import NoFilms
-from quintet.components.sph_fluid.boundary.no_pistons import NoPistons
 from quintet.components.sph_fluid.boundary.symmetry_planes import NoSymmetry
 from quintet.components.sph_fluid.component import LOADS, SphFluid
 from quintet.components.sph_fluid.mass_balance.losses import refuse_many_lost
@@ -28,7 +27,6 @@ from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.ports import SHOWS
 from quintet.components.sph_fluid.ranks.one import OneRank
 from quintet.components.sph_fluid.setup.tait import TAIT
-from quintet.components.sph_fluid.waves.no_damping import NoDamping
 from quintet.interfaces.component import Component, Fields, Keys, Resources, Totals
 from quintet.interfaces.errors import SceneError
 
@@ -56,7 +54,7 @@ class DeviceFluid(Component):
         self.params, (self.takes, self.gives) = params, self.ports_of(params)
         self.host = SphFluid(params, replace(resources, device="cpu"))
         self._refuse_other_parts(resources.device)
-        parts = (self.host.lists.reach, self.host.frame)
+        parts = (self.host.lists.reach, self.host.frame, self.host.damping)
         self.stepping = Stepping(params, device, resources.threads, *parts)
         self._speed = 0.0  # m/s, of the fastest fluid, where the scheme looks ahead by it
         self.host.make_film_rows = self.stepping.make_film_rows
@@ -66,7 +64,7 @@ class DeviceFluid(Component):
         """Refuse parts of the host that its step would call: a device's step does not."""
         host = self.host
         pairs = (
-            (host.damping, NoDamping), (host.pistons, NoPistons), (host.symmetry, NoSymmetry),
+            (host.symmetry, NoSymmetry),
             (host.open_boundaries, NoOpenBoundaries), (host.all_ranks, OneRank),
         )  # fmt: skip
         others = [type(part).__name__ for part, expected in pairs if type(part) is not expected]
@@ -111,6 +109,8 @@ class DeviceFluid(Component):
         """Advance by dt [s]."""
         host = self.host
         host.samples.require_placed()
+        if host.walls_move:
+            self._place_pistons(dt)
         if host.lists.need_rebuild(host.state, host.boundary, dt, self._speed):
             self._sort()
         state = host.state
@@ -129,7 +129,16 @@ class DeviceFluid(Component):
         state.moved, self._speed = extremes.moved, extremes.speed
         state.largest_acceleration, state.largest_approach = extremes[:2]
         state.last_dt, state.steps = dt, state.steps + 1
+        self.stepping.damping.apply(state, dt)
         host.frame.advance(dt)
+        host.pistons.advance(state, dt)
+
+    def _place_pistons(self, dt: float) -> None:
+        """Put pistons where they are in the middle of a step; those that absorb read the fluid."""
+        if any(piston.absorbs for piston in self.params.boundary.pistons):
+            self._get()
+        self.host.pistons.place(self.host.state, self.host.boundary, dt)
+        self.stepping.rows.place(self.host.state, self.host.samples.row)
 
     def _apply_forces(self, dt: float) -> None:
         """Push the samples as they pushed the fluid; move the fluid with its neighbours (XSPH)."""

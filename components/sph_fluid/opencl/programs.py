@@ -29,12 +29,16 @@ SIX, TEN = (0.0,) * 6, (0.0,) * 10
 
 
 def rows_program(
-    law: PairLaw, precision: Precision, lanes: int, forces: "FrameForces | None" = None
+    law: PairLaw,
+    precision: Precision,
+    lanes: int,
+    forces: "FrameForces | None" = None,
+    damps: bool = False,
 ) -> str:
     """Sorting, searching, the boundary and steps: always in double precision.
 
     `precision` is that of the rates, of which steps are made; `forces` are those of a frame that
-    moves.
+    moves; `damps` tells whether there are damping zones.
     """
     program, constants = Program("double", lanes), law.constants
     search = cells.source(program)
@@ -66,6 +70,16 @@ def rows_program(
             f"#define InFrame {program.add(frame_acceleration, *of_frame)[1].name}",
         ]
         sources.append("frame")
+    if damps:
+        # Left out of scenes without damping zones.
+        from quintet.components.sph_fluid.waves.laws import damped_share, damping_strength
+
+        place = (0.0, 0.0, 0.0, True)
+        names += [
+            _named(program, "damping_strength", damping_strength, *place),
+            _named(program, "damped_share", damped_share, 0.0, 0.0, 0.0),
+        ]
+        sources.append("damping")
     return "\n".join([program.text, *names, search, *_sources("lanes", *sources)])
 
 

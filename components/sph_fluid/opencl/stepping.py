@@ -17,9 +17,11 @@ from quintet.components.sph_fluid.opencl.schemes import scheme
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.ranks.method import Ranks
 from quintet.components.sph_fluid.state import State
+from quintet.components.sph_fluid.waves.no_damping import Damping, NoDamping
 
 if TYPE_CHECKING:
     from quintet.components.sph_fluid.boundary.film_geometry import Faces, Films
+    from quintet.components.sph_fluid.opencl.damping import DeviceDamping
     from quintet.components.sph_fluid.opencl.film_rows import DeviceFilmRows
     from quintet.components.sph_fluid.opencl.shepard_filter import DeviceFilter
 
@@ -49,19 +51,28 @@ class Stepping:
         Of the neighbour lists.
     frame : Frame
         In which the fluid is computed.
+    damping : Damping
     """
 
     def __init__(
-        self, params: SphFluidParams, device: Device, threads: int, reach: float, frame: Frame
+        self,
+        params: SphFluidParams,
+        device: Device,
+        threads: int,
+        reach: float,
+        frame: Frame,
+        damping: Damping,
     ) -> None:
         self.params, self.queue = params, device.queue(threads)
         precision: Precision = "double" if params.precision == "float64" else "single"
         law, lanes = pair_law(params), LANES_OF_PROCESSORS if device.is_processor else 1
-        kernels = build(self.queue, rows_program(law, precision, lanes, frame.forces))
+        damps = not isinstance(damping, NoDamping)
+        kernels = build(self.queue, rows_program(law, precision, lanes, frame.forces, damps))
         self._of_films = kernels.film_sides, kernels.fluid_share
         self.rows = DeviceState(self.queue, kernels, params, reach, device.is_processor)
         self.passes = Passes(params, lanes, kernels, self.rows, precision, frame)
         self._scheme = scheme(params, kernels, self.rows, self.passes)
+        self.damping = damping_zones(damping, kernels, self.rows)
         self.filter = shepard_filter(params, kernels, self.rows)
 
     def step(self, state: State, dt: float, apply_forces: Callable[[], None]) -> Extremes:
@@ -93,3 +104,15 @@ def shepard_filter(
     from quintet.components.sph_fluid.opencl.shepard_filter import DeviceFilter
 
     return DeviceFilter(params, kernels, rows)
+
+
+def damping_zones(damping: Damping, kernels: Any, rows: DeviceState) -> "NoDamping | DeviceDamping":
+    """Zones in which the fluid's motion is damped."""
+    if isinstance(damping, NoDamping):
+        return damping
+    # Left out of scenes without damping zones.
+    from quintet.components.sph_fluid.opencl.damping import DeviceDamping
+    from quintet.components.sph_fluid.waves.damping import DampingZones
+
+    assert isinstance(damping, DampingZones)
+    return DeviceDamping(damping, kernels, rows)

@@ -15,6 +15,7 @@ from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.ranks.method import Ranks
 from quintet.components.sph_fluid.setup.damping_zones import DampingZone
 from quintet.components.sph_fluid.state import Array, State, Whole
+from quintet.components.sph_fluid.waves.laws import damped_share, damping_strength
 from quintet.interfaces.component import Fields
 
 SAVED = "damping"  # key of a saved state: work [J]
@@ -36,9 +37,13 @@ class DampingZones:
             velocity = state.velocity_pressure[rows, :3]
             u, v, w = velocity.T
             speed2 = u * u + v * v + w * w
-            share = 1.0 / (1.0 + zone.rate * dt * strength)
+            share = damped_share(strength, zone.rate, dt)
             state.velocity_pressure[rows, :3] = velocity * share[:, np.newaxis]
             taken[rows] += speed2 * (1.0 - share * share)
+        self.count_work(state, taken)
+
+    def count_work(self, state: State, taken: Array) -> None:
+        """Count what was taken of the squares of velocities (fluid,) m2/s2."""
         (sum2,) = self.ranks.sums(state, [taken]).tolist()
         self.work -= 0.5 * self.mass * sum2
 
@@ -53,10 +58,8 @@ class DampingZones:
             inside &= state.role == 0
         rows = np.flatnonzero(inside)
         axis = "xyz".index(zone.towards[0])
-        share = (position[rows, axis] - low[axis]) / (high[axis] - low[axis])
-        if zone.towards[1] == "-":
-            share = 1.0 - share
-        return rows, share * share
+        ends = (low[axis], high[axis])
+        return rows, damping_strength(position[rows, axis], *ends, zone.towards[1] == "-")
 
     def save(self) -> dict[str, Array]:
         """Copy out their work."""

@@ -9,7 +9,7 @@ import pytest
 from device_fluids import DEVICE, DYNAMIC, MIRRORED, TWICE, advanced, difference, params_of
 
 from quintet.components.sph_fluid.component import SphFluid
-from quintet.components.sph_fluid.conform import CHANNEL, PUSHED
+from quintet.components.sph_fluid.conform import CHANNEL
 from quintet.components.sph_fluid.pairs.interaction import relative_wall_volume
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.setup.boundary import Boundary
@@ -155,36 +155,25 @@ REFUSED = {
     "boundary.method": {"boundary": DYNAMIC["boundary"] | {"method": "potential"}},
     "boundary.symmetry": {"boundary": DYNAMIC["boundary"] | {"symmetry": ["y-"]}},
     "boundary.periodic": {"boundary": WALLED | {"periodic": ["x"]}, "gravity": [1.0, 0.0, 0.0]},
-    "boundary.pistons": {"boundary": DYNAMIC["boundary"] | {"pistons": PUSHED["pistons"]}},
     "boundary.inflow": CHANNEL,
     "boundary.outflow": CHANNEL,
 }
 
 
-FLUME = {
-    "fluid": [{"shape": "box", "lowest": [0.0, 0.0, 0.0], "highest": [2.0, 0.5, 0.5]}],
-    "boundary": {
-        "method": "dbc",
-        "walls": {"lowest": [0.0, 0.0, 0.0], "highest": [2.0, 0.5, 0.8]},
-        "damping": [{"lowest": [1.0, 0.0, 0.0], "highest": [2.0, 0.5, 0.8], "towards": "x+"}],
-    },
-}
-
-
-def test_damping_zones_are_refused_with_what_to_do():
-    params = params_of(DYNAMIC | FLUME)
+def test_inflows_are_refused_with_what_to_do():
+    params = params_of(DYNAMIC | CHANNEL)
     with pytest.raises(SceneError) as caught:
         refuse_what_needs_the_processor(params, "opencl:0")
-    assert str(caught.value) == (
-        "on device opencl:0, boundary.damping must be empty; found 1. Remove them, or set "
+    assert str(caught.value).startswith(
+        "on device opencl:0, boundary.inflow must be empty; found 1. Remove them, or set "
         'device = "cpu".'
     )
 
 
 def test_parts_of_the_host_that_no_key_tells_of_are_refused(monkeypatch):
     monkeypatch.setattr(device_fluid, "refuse_what_needs_the_processor", lambda *_: None)
-    with pytest.raises(SceneError, match=r"on device opencl, .* found DampingZones\. Set device"):
-        DeviceFluid(params_of(DYNAMIC | FLUME), DEVICE)
+    with pytest.raises(SceneError, match=r"on device opencl, .* found Symmetry\. Set device"):
+        DeviceFluid(params_of(DYNAMIC | REFUSED["boundary.symmetry"]), DEVICE)
 
 
 def test_every_key_of_a_fluid_is_supported_or_limited():

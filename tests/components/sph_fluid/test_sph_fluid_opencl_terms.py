@@ -5,7 +5,7 @@ import pytest
 from device_fluids import DEVICE, DYNAMIC, MIRRORED, TWICE, advanced, difference, params_of
 
 from quintet.components.sph_fluid.component import SphFluid
-from quintet.components.sph_fluid.conform import ROLLING
+from quintet.components.sph_fluid.conform import FLUME, PUSHED, ROLLING
 
 pytest.importorskip("pyopencl")
 from quintet.components.sph_fluid.opencl.device_fluid import DeviceFluid
@@ -82,3 +82,28 @@ def test_fluid_with_kinematic_viscosity_sticks_to_walls_as_on_the_processor(chan
     processor, device = advanced(SphFluid(params), 60), advanced(DeviceFluid(params, DEVICE), 60)
     limit = 1e-4 if "precision" in changes else 2e-7
     assert difference(processor, device, "velocity") < limit
+
+
+PISTONS = [
+    FLUME | TWICE,
+    DYNAMIC | {"boundary": DYNAMIC["boundary"] | {"pistons": PUSHED["pistons"]}},
+]
+
+
+@pytest.mark.parametrize("table", PISTONS)
+def test_pistons_and_damping_zones_act_as_on_the_processor(table):
+    params = params_of(table)
+    fluids = SphFluid(params), DeviceFluid(params, DEVICE), DeviceFluid(params, DEVICE)
+    for fluid in fluids:
+        fluid.bind({}, frozenset())
+    processor, device, other = fluids
+    advanced(processor, 60), advanced(device, 60)
+    assert difference(processor, device, "points") < 1e-12
+    first, second = processor.save(), device.save()
+    for key in {"pistons", "pistons_corrected", "damping"} & first.keys():
+        assert np.any(first[key] != 0.0)
+        assert second[key] == pytest.approx(first[key], rel=1e-8), key
+    other.load(second)
+    one, again = advanced(device, 10).save(), advanced(other, 10).save()
+    for key, array in one.items():
+        assert np.array_equal(array, again[key], equal_nan=True), key

@@ -45,6 +45,7 @@ from quintet.components.sph_fluid import laws as fluid
 from quintet.components.sph_fluid.boundary.kernels import mirrored_density as mirrored
 from quintet.components.sph_fluid.integration.kernels import failed
 from quintet.components.sph_fluid.motion import laws as motion
+from quintet.components.sph_fluid.waves import laws as waves
 from quintet.components.sph_solid import laws as solid
 
 ANY, PART, LARGE = Between(-1.0, 1.0), Between(0.01, 1.0), Between(0.5, 2.0)
@@ -99,6 +100,8 @@ LAWS = [
     Law(fluid.tait, (DENSITY, CONSTANTS)),
     Law(fluid.tait, (DENSITY, CALM), name=" below zero"),
     Law(fluid.pressure_term, (DENSITY, CALM)),
+    Law(waves.damping_strength, (ANY, -1.0, 2.0, True)),
+    Law(waves.damped_share, (PART, 9.0, 1e-3)),
     Law(motion.cross, (vector(9.0), vector(9.0))),
     Law(motion.later, (vector(9.0), vector(9.0), vector(9.0), PART)),
     Law(motion.frame_acceleration, (vector(9.0), vector(9.0), vector(9.0), FORCES)),
