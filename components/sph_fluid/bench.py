@@ -55,6 +55,7 @@ def cases() -> tuple[BenchCase, ...]:
             ("dam break", dam, none),
             ("dam break, 22k", small, none),
             ("dam break, float32", dam | {"precision": "float32"}, none),
+            ("dam break, mdbc", mirrored | ALL, none),
             ("dam break, coupled", dam | {"fluid": NOTCHED}, cube()),
         )
         if is_any_there()
