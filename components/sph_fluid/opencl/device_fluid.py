@@ -53,6 +53,7 @@ class DeviceFluid(Component):
             )
         self.params, (self.takes, self.gives) = params, self.ports_of(params)
         self.host = SphFluid(params, replace(resources, device="cpu"))
+        self.walls_move = self.host.walls_move
         self._refuse_other_parts(resources.device)
         parts = (self.host.lists.reach, self.host.frame, self.host.damping)
         self.stepping = Stepping(params, device, resources.threads, *parts)
@@ -109,7 +110,7 @@ class DeviceFluid(Component):
         """Advance by dt [s]."""
         host = self.host
         host.samples.require_placed()
-        if host.walls_move:
+        if self.walls_move:
             self._place_pistons(dt)
         if host.lists.need_rebuild(host.state, host.boundary, dt, self._speed):
             self._sort()

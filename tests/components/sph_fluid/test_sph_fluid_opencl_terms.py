@@ -99,6 +99,9 @@ def test_pistons_and_damping_zones_act_as_on_the_processor(table):
     processor, device, other = fluids
     advanced(processor, 60), advanced(device, 60)
     assert difference(processor, device, "points") < 1e-12
+    assert device.walls_move
+    faces = [fluid.walls()["points"] for fluid in (processor, device)]
+    np.testing.assert_allclose(*faces, rtol=0.0, atol=1e-12)
     first, second = processor.save(), device.save()
     for key in {"pistons", "pistons_corrected", "damping"} & first.keys():
         assert np.any(first[key] != 0.0)
