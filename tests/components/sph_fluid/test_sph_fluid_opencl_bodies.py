@@ -126,8 +126,8 @@ CASES = [
 @pytest.mark.parametrize(("changes", "start", "share"), CASES)
 def test_a_body_is_pushed_as_on_the_processor(changes, start, share):
     (processor, first), (device, second) = pair(changes, start, share)
-    expected, found = first.push(processor, 80), second.push(device, 80)
-    assert np.abs(found - expected).max() < 1e-9 * np.abs(expected).max()
+    expected, computed = first.push(processor, 80), second.push(device, 80)
+    assert np.abs(computed - expected).max() < 1e-9 * np.abs(expected).max()
     require_close(processor, device)
     assert (processor.state.film != 0.0).any() == ("lubrication_films" in str(changes))
     assert processor.state.moved < 80 * 4e-4 * np.linalg.norm(SPEED)  # lists were made again
@@ -136,8 +136,8 @@ def test_a_body_is_pushed_as_on_the_processor(changes, start, share):
 def test_a_device_that_is_no_processor_pushes_bodies_too(monkeypatch):
     monkeypatch.setattr(Device, "is_processor", property(lambda self: False))
     (processor, first), (device, second) = pair(MIRRORED, share=0.8)
-    expected, found = first.push(processor, 30), second.push(device, 30)
-    assert np.abs(found - expected).max() < 1e-9 * np.abs(expected).max()
+    expected, computed = first.push(processor, 30), second.push(device, 30)
+    assert np.abs(computed - expected).max() < 1e-9 * np.abs(expected).max()
 
 
 @pytest.mark.parametrize("changes", [MIRRORED, DYNAMIC])
@@ -167,22 +167,22 @@ def test_bodies_are_pushed_with_the_same_bits_on_any_number_of_threads():
 def test_snapshots_of_fluids_with_bodies_go_on_elsewhere():
     fluids = pair(FILMS, LOW)
     (processor, cube), (device, _) = fluids
-    for fluid, of_its_own in fluids:
-        of_its_own.push(fluid, 25)
+    for fluid, its_cube in fluids:
+        its_cube.push(fluid, 25)
     params = around(LOW, **FILMS)
     others = {}
-    for name, made, source in (
+    for name, restarted, source in (
         ("out", SphFluid(params), device),
         ("in", DeviceFluid(params, DEVICE), processor),
         ("on", DeviceFluid(params, DEVICE), device),
     ):
         again = Cube(start=LOW)
-        others[name] = joined(made, again)
-        made.load(source.save())
+        others[name] = joined(restarted, again)
+        restarted.load(source.save())
         again.place = cube.place.copy()
-        again.push(made, 25)
-    for fluid, of_its_own in fluids:
-        of_its_own.push(fluid, 25)
+        again.push(restarted, 25)
+    for fluid, its_cube in fluids:
+        its_cube.push(fluid, 25)
     require_close(processor, others["out"])
     require_close(processor, others["in"])
     first, second = device.save(), others["on"].save()
@@ -204,8 +204,8 @@ def test_fluid_inside_a_body_is_removed():
 def test_single_precision_rounds_forces_on_bodies():
     exact, cube = pair(MIRRORED)[0]
     rounded, other = pair(MIRRORED | {"precision": "float32"})[1]
-    expected, found = cube.push(exact, 20), other.push(rounded, 20)
-    assert 0.0 < np.abs(found - expected).max() < 1e-3 * np.abs(expected).max()
+    expected, computed = cube.push(exact, 20), other.push(rounded, 20)
+    assert 0.0 < np.abs(computed - expected).max() < 1e-3 * np.abs(expected).max()
 
 
 def test_samples_must_be_placed_before_a_step():

@@ -62,8 +62,8 @@ def test_tanks_move_as_on_the_processor(table):
     assert second == pytest.approx(first, rel=1e-3 if "precision" in table else 1e-9)
     other = DeviceFluid(params, DEVICE)
     other.load(device.save())
-    one, again = advanced(device, 10).save(), advanced(other, 10).save()
-    for key, array in one.items():
+    whole, again = advanced(device, 10).save(), advanced(other, 10).save()
+    for key, array in whole.items():
         assert np.array_equal(array, again[key], equal_nan=True), key
 
 
@@ -107,6 +107,6 @@ def test_pistons_and_damping_zones_act_as_on_the_processor(table):
         assert np.any(first[key] != 0.0)
         assert second[key] == pytest.approx(first[key], rel=1e-8), key
     other.load(second)
-    one, again = advanced(device, 10).save(), advanced(other, 10).save()
-    for key, array in one.items():
+    whole, again = advanced(device, 10).save(), advanced(other, 10).save()
+    for key, array in whole.items():
         assert np.array_equal(array, again[key], equal_nan=True), key
