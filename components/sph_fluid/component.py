@@ -211,7 +211,7 @@ class SphFluid(Component):
         """Copy out all state; the neighbour list is kept as the places it was made from."""
         whole = self.all_ranks.whole(self.state).save()
         others = self.frame.save() | self.pistons.save() | self.open_boundaries.save()
-        others |= self.damping.save()
+        others |= self.damping.save() | {"reach": np.array(self.lists.reach)}
         return whole | {"placed": np.array(self.samples.placed)} | others
 
     def load(self, state: Fields) -> None:
@@ -221,6 +221,7 @@ class SphFluid(Component):
         diagnostics.refuse_other_samples(state, len(self.samples.volume))
         diagnostics.refuse_other_particles(state, most, self.all_ranks.boundary(self.state))
         self.state, self.samples.placed = State.load(state), bool(state["placed"])
+        self.state.fit_damper(self.params.acoustic_damper > 0.0)
         self.all_ranks.load(self.state)
         self.samples.find_rows(self.state)
         self.boundary.load(self.state)
@@ -233,6 +234,7 @@ class SphFluid(Component):
 
     def begin_from(self, state: Fields) -> None:
         """Begin from the state of another run; motions, books and warnings begin with this one."""
+        diagnostics.refuse_other_reach(state, self.lists.reach)
         clocks = {*self.frame.save(), *self.pistons.save(), *self.damping.save()}
         super().begin_from({key: rows for key, rows in state.items() if key not in clocks})
         begin_books(self.state, self.all_ranks.fluid(self.state))

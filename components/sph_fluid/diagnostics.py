@@ -163,6 +163,17 @@ def refuse_other_samples(saved: Fields, samples: int) -> None:
         )
 
 
+def refuse_other_reach(saved: Fields, reach: float) -> None:
+    """Refuse a state whose rows are in the order of neighbour lists with another reach [m]."""
+    before = float(saved.get("reach", reach))
+    if before != reach:
+        raise SceneError(
+            f"the state that it begins from must have neighbour lists that reach {reach:.6g} m, by "
+            f"spacing, smoothing and integration; found {before:.6g} m. Take those of that run, or "
+            "leave the fluid out of begin_from.components."
+        )
+
+
 def refuse_dense(state: State, params: SphFluidParams, ranks: Ranks) -> None:
     """Raise where the fluid was struck faster than a weakly compressible one can be.
 

@@ -98,6 +98,11 @@ class State:
         """Number of particles that left the domain."""
         return int(self.lost_through.sum())
 
+    def fit_damper(self, is_damped: bool) -> None:
+        """Have an array for the acoustic damper where there is one; a state may come without."""
+        if is_damped != bool(len(self.minus_rho_div_u)):
+            self.minus_rho_div_u = np.zeros(self.particles if is_damped else 0)
+
     def keep(self, fluid: Whole, boundary: Whole) -> None:
         """Keep these rows of the fluid and of the boundary, in this order; all else goes."""
         rows = np.concatenate([fluid, self.fluid + boundary])

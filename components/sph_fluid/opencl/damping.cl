@@ -1,9 +1,10 @@
 /* A zone that damps the fluid's motion, in double precision; laws are printed. */
 
-/* Damp velocities in a zone at the end of a step; add what is taken of their squares. */
+/* Damp velocities in a zone at the end of a step. `taken` sums by how much their squares fall. */
 __kernel void damp(
     int split, double4 low, double4 high, int axis, int is_lower, double rate, double dt,
-    __global const double4 *position, __global double4 *velocity, __global double *taken)
+    __global const double4 *position, __global double4 *velocity, __global double *taken,
+    __global double4 *extremes)
 {
     const int i = get_global_id(0);
     if (i >= split) return;
@@ -16,4 +17,5 @@ __kernel void damp(
     const double share = damped_share(strength, rate, dt);
     taken[i] += square_of(velocity[i].xyz) * (1.0 - share * share);
     velocity[i].xyz *= share;
+    extremes[i].w = square_of(velocity[i].xyz);
 }

@@ -1,10 +1,12 @@
 """The fluid as a component whose steps run on an OpenCL device.
 
-An `SphFluid` on the host makes the particles, and reads gauges, totals, views and snapshots: rows
-are copied into its state before. Between these a step sends four numbers from the device.
+An `SphFluid` on the host makes the particles, and reads gauges, totals, views, checks and
+snapshots: rows are copied into its state before. Between these a step brings back four numbers;
+with bodies the forces on their samples too, with damping zones and moving tanks a number per
+particle.
 
-Samples of bodies are placed in the host's state and copied to the device, which returns the forces
-on them. Where there are samples, the host's rows of the boundary have the order of the device's.
+Samples of bodies are placed in the host's state and copied to the device. Where there are samples,
+the host's rows of the boundary have the order of the device's.
 """
 
 from dataclasses import replace
@@ -127,10 +129,10 @@ class DeviceFluid(Component):
         if extremes.failed:
             self._get()
             raise diagnostics.failure(state, self.params, dt, host.all_ranks)
-        state.moved, self._speed = extremes.moved, extremes.speed
+        state.moved = extremes.moved
         state.largest_acceleration, state.largest_approach = extremes[:2]
         state.last_dt, state.steps = dt, state.steps + 1
-        self.stepping.damping.apply(state, dt)
+        self._speed = self.stepping.damp(state, dt, extremes.speed)
         host.frame.advance(dt)
         host.pistons.advance(state, dt)
 

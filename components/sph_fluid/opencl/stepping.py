@@ -76,7 +76,7 @@ class Stepping:
         self.filter = shepard_filter(params, kernels, self.rows)
 
     def step(self, state: State, dt: float, apply_forces: Callable[[], None]) -> Extremes:
-        """Advance the rows by dt [s]; `state` tells of the last step.
+        """Advance the rows by dt [s]; `state` has the length of the last step.
 
         `apply_forces` is called once, when the rates are those that the step is made of.
         """
@@ -85,6 +85,14 @@ class Stepping:
         square, approach, shift2, speed2 = rows.cells.greatest(rows.extremes, rows.split)
         acceleration, moved, speed = map(math.sqrt, (square, shift2, speed2))
         return Extremes(acceleration, float(approach), moved, speed, bool(np.isinf(speed2)))
+
+    def damp(self, state: State, dt: float, speed: float) -> float:
+        """Damp the fluid in zones at the end of a step; return its greatest speed [m/s] then."""
+        if isinstance(self.damping, NoDamping):
+            return speed
+        self.damping.apply(state, dt)
+        # As a fluid that goes on from a snapshot finds it.
+        return math.sqrt(self.rows.cells.greatest(self.rows.extremes, self.rows.split)[3])
 
     def make_film_rows(self, films: "Films", faces: "Faces", ranks: Ranks) -> "DeviceFilmRows":
         """Rows that films lie between."""

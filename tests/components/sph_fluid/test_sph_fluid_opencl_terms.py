@@ -1,5 +1,7 @@
 """Terms that scenes add to a fluid on an OpenCL device act as on the processor."""
 
+from copy import deepcopy
+
 import numpy as np
 import pytest
 from device_fluids import DEVICE, DYNAMIC, MIRRORED, TWICE, advanced, difference, params_of
@@ -110,3 +112,31 @@ def test_pistons_and_damping_zones_act_as_on_the_processor(table):
     whole, again = advanced(device, 10).save(), advanced(other, 10).save()
     for key, array in whole.items():
         assert np.array_equal(array, again[key], equal_nan=True), key
+
+
+def test_a_fluid_that_a_zone_slows_goes_on_with_the_same_bits():
+    """The lists of position Verlet look ahead by the greatest speed: that after damping."""
+    zone = {
+        "lowest": [-1.0, -1.0, -1.0],
+        "highest": [9.0, 9.0, 9.0],
+        "towards": "x+",
+        "rate": 300.0,
+    }
+    table = deepcopy(FLUME | TWICE)
+    table["boundary"] |= {"damping": [zone]}
+    device, other = (DeviceFluid(params_of(table), DEVICE) for _ in range(2))
+    for fluid in (device, other):
+        fluid.bind({}, frozenset())
+    other.load(advanced(device, 30).save())
+    whole, resumed = advanced(device, 20).save(), advanced(other, 20).save()
+    for key, array in whole.items():
+        assert np.array_equal(array, resumed[key], equal_nan=True), key
+
+
+def test_a_damper_may_begin_from_a_state_without_one():
+    begun = advanced(DeviceFluid(params_of(DYNAMIC | TWICE), DEVICE), 5).save()
+    damped = params_of(DYNAMIC | TWICE | {"acoustic_damper": 0.05})
+    fluids = SphFluid(damped), DeviceFluid(damped, DEVICE)
+    for fluid in fluids:
+        fluid.begin_from(begun)
+    assert difference(*(advanced(fluid, 20) for fluid in fluids), "points") < 1e-12
