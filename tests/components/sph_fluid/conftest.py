@@ -20,10 +20,10 @@ NOTHING = (0.0, 0.0, 0.0)
 def drop() -> Callable[..., SphFluid]:
     """Make a cube of fluid of 6³ particles in empty space."""
 
-    def make(**given: Any) -> SphFluid:
+    def make(**changes: Any) -> SphFluid:
         edge = 6 * SPACING
         settings = {"spacing": SPACING, "sound_speed": 20.0, "fluid": ((NOTHING, (edge,) * 3),)}
-        return SphFluid(fluid_params(**(settings | given)))
+        return SphFluid(fluid_params(**(settings | changes)))
 
     return make
 
@@ -32,14 +32,14 @@ def drop() -> Callable[..., SphFluid]:
 def pool() -> Callable[..., SphFluid]:
     """Make water 0.1 m deep in a tank 0.16 m wide."""
 
-    def make(**given: Any) -> SphFluid:
+    def make(**changes: Any) -> SphFluid:
         settings = {
             "spacing": SPACING,
             "sound_speed": 20.0 * math.sqrt(9.81 * 0.1),
             "fluid": ((NOTHING, (0.16, 0.16, 0.1)),),
             "boundary.walls": (NOTHING, (0.16, 0.16, 0.16)),
         }
-        return SphFluid(fluid_params(**(settings | given)))
+        return SphFluid(fluid_params(**(settings | changes)))
 
     return make
 
@@ -69,7 +69,7 @@ def plate() -> Callable[..., Fields]:
 
 @pytest.fixture
 def struck() -> Callable[..., tuple[Any, Any]]:
-    """Let samples strike a fluid for two steps; return impulses on them and what it gained."""
+    """Let samples strike a fluid; return their impulses and the momentum that it gained."""
 
     def strike(fluid: SphFluid, fields: Fields) -> tuple[Any, Any]:
         fluid.take(fields)

@@ -1,4 +1,4 @@
-"""What test_sph_fluid_ranks.py runs on several ranks; rank 0 writes what came out."""
+"""Program that test_sph_fluid_ranks.py runs on several ranks; rank 0 writes the results."""
 
 import re
 import tempfile
@@ -154,7 +154,7 @@ class Run(SolverRun):
         }
 
     def failure(self):
-        """What a step says that no fluid bears, without the rank that it names, which is right."""
+        """Message of a step that is too large; its rank is checked and left out."""
         text = "nothing"
         try:
             self.solver.step(0.05)
@@ -162,9 +162,9 @@ class Run(SolverRun):
             text = str(error)
         text = WORLD.bcast(text)
         if WORLD.size > 1:
-            words = re.search(r"particle (\d+)( \(rank (\d+) on \S+\))", text)
+            match = re.search(r"particle (\d+)( \(rank (\d+) on \S+\))", text)
             state = self.solver.state
-            owns = int(words[1]) in state.identity[: state.fluid]
-            assert owns == (WORLD.rank == int(words[3])), text
-            text = text.replace(words[2], "")
+            owns = int(match[1]) in state.identity[: state.fluid]
+            assert owns == (WORLD.rank == int(match[3])), text
+            text = text.replace(match[2], "")
         return text

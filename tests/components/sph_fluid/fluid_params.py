@@ -18,17 +18,17 @@ def nested(settings: dict[str, Any]) -> dict[str, Any]:
     """Tables of settings by dotted names, as presets write them; `__` is a dot in a keyword."""
     table: dict[str, Any] = {}
     for name, value in settings.items():
-        *heads, last = name.replace("__", ".").split(".")
-        at = table
-        for head in heads:
-            at = at.setdefault(head, {})
-        at[last] = value
-    edge = table.get("boundary", {})
-    for table_of, name in ((table, "fluid"), (edge, "obstacles")):
-        if name in table_of:
-            table_of[name] = [box(value) for value in table_of[name]]
-    if edge.get("walls") is not None:
-        edge["walls"] = box(edge["walls"])
+        *parents, key = name.replace("__", ".").split(".")
+        subtable = table
+        for parent in parents:
+            subtable = subtable.setdefault(parent, {})
+        subtable[key] = value
+    boundary = table.get("boundary", {})
+    for section, name in ((table, "fluid"), (boundary, "obstacles")):
+        if name in section:
+            section[name] = [box(value) for value in section[name]]
+    if boundary.get("walls") is not None:
+        boundary["walls"] = box(boundary["walls"])
     return table
 
 
@@ -39,23 +39,23 @@ def box(corners: Any) -> Any:
     return {"shape": "box", "lowest": list(corners[0]), "highest": list(corners[1])}
 
 
-def fluid_params(**given: Any) -> SphFluidParams:
+def fluid_params(**settings: Any) -> SphFluidParams:
     """Check settings by dotted names; walls are dynamic particles unless they say otherwise."""
-    table = nested(given)
+    table = nested(settings)
     table.setdefault("boundary", {}).setdefault("method", "dbc")
     text = json.dumps(table)
     params: SphFluidParams = TypeAdapter(SphFluidParams).validate_json(text)
     return params
 
 
-def summed(
+def pair_sums(
     law: PairLaw, position: np.ndarray, velocity: np.ndarray, lists: Lists, fluid: int,
     gravity: tuple[float, float, float] = ORIGIN,
 ) -> np.ndarray:  # fmt: skip
     """Accelerations and rates of density (n, 4) of the first rows, which are fluid."""
-    none = np.zeros(0)
-    rates = Rates(np.zeros_like(position), np.zeros((0, 3)), none)
-    boundary = BoundaryRows(np.zeros((0, 4)), none, none)
+    empty = np.zeros(0)
+    rates = Rates(np.zeros_like(position), np.zeros((0, 3)), empty)
+    boundary = BoundaryRows(np.zeros((0, 4)), empty, empty)
     particles = Particles(position, velocity)
     pair_rates(0, fluid, fluid, particles, boundary, lists, law, gravity, rates)
     return rates.rate

@@ -1,4 +1,4 @@
-"""The damper of sound: how fast sound fades, what it leaves alone, and its step limit."""
+"""The damper of sound: its decay rate, no effect on shear, and its step limit."""
 
 import math
 from collections.abc import Callable
@@ -25,10 +25,10 @@ CALM = {
 }
 
 
-def tube(spacing: float = 0.02, **given: Any) -> SphFluid:
+def tube(spacing: float = 0.02, **changes: Any) -> SphFluid:
     """Make a closed slab of fluid between two planes of symmetry, floor and lid."""
     box = ((0.0, 0.0, 0.0), (LENGTH, 0.1, LENGTH))
-    shut = {
+    closed_tank = {
         "fluid": (box,),
         "boundary.walls": box,
         "boundary.open_faces": (),
@@ -36,8 +36,10 @@ def tube(spacing: float = 0.02, **given: Any) -> SphFluid:
         "dimensions": 2,
     }
     settings = {"spacing": spacing, "sound_speed": SOUND, "integration": "symplectic"}
-    fluid = SphFluid(fluid_params(**(settings | shut | {"boundary.method": "mdbc"} | CALM | given)))
-    fluid.state.position_density[:, 3] += 1.0  # kg/m3: walls do not pull, so that none must
+    fluid = SphFluid(
+        fluid_params(**(settings | closed_tank | {"boundary.method": "mdbc"} | CALM | changes))
+    )
+    fluid.state.position_density[:, 3] += 1.0  # kg/m3; walls cannot pull
     return fluid
 
 
@@ -47,16 +49,16 @@ def fading(fluid: SphFluid) -> float:
     fluid.state.velocity_pressure[rows, 0] = 1e-3 * np.sin(
         K * fluid.state.position_density[rows, 0]
     )
-    count, sizes = math.ceil(time / fluid.stable_dt()), []
+    count, amplitudes = math.ceil(time / fluid.stable_dt()), []
     for _ in range(count):
         fluid.step(time / count)
-        along, moving = (
+        phase, speed = (
             K * fluid.state.position_density[rows, 0],
             fluid.state.velocity_pressure[rows, 0],
         )
-        pressed = (fluid.state.position_density[rows, 3] - 1001.0) * SOUND / 1000.0
-        sizes.append([(moving * np.sin(along)).mean(), (pressed * np.cos(along)).mean()])
-    energy = (np.array(sizes) ** 2).sum(axis=1)
+        acoustic_speed = (fluid.state.position_density[rows, 3] - 1001.0) * SOUND / 1000.0
+        amplitudes.append([(speed * np.sin(phase)).mean(), (acoustic_speed * np.cos(phase)).mean()])
+    energy = (np.array(amplitudes) ** 2).sum(axis=1)
     return -0.5 * float(np.polyfit(np.arange(count) * time / count, np.log(energy), 1)[0])
 
 
@@ -66,7 +68,7 @@ def fading(fluid: SphFluid) -> float:
 def test_sound_fades_as_bulk_viscosity_lets_it(
     spacing: float, error: float, diffusion: float
 ) -> None:
-    """Beside floor and lid, which stand still, pairs see less of ∇·u: the more, the coarser."""
+    """Pairs near the floor and the lid see less of ∇·u; the error grows with the spacing."""
     plain, damped = (
         fading(tube(spacing, density_diffusion=diffusion, acoustic_damper=z)) for z in (0.0, 0.5)
     )
@@ -74,8 +76,8 @@ def test_sound_fades_as_bulk_viscosity_lets_it(
     assert damped - plain == pytest.approx(expected, rel=error)
 
 
-def squeezed(fluid: SphFluid) -> np.ndarray:
-    """What the damper knows of the flow: -ρ∇·u (n,) kg/(m3 s)."""
+def damper_input(fluid: SphFluid) -> np.ndarray:
+    """Rate of compression that the damper uses: -ρ∇·u (n,) kg/(m3 s)."""
     fluid.lists.sort(fluid.state)
     fluid._list()
     fluid._compute_rates(0.0, 0.0)
@@ -87,7 +89,7 @@ def test_damper_leaves_shear_alone() -> None:
     place, motion = fluid.state.position_density, fluid.state.velocity_pressure
     inside = (np.abs(place[: fluid.state.fluid, [0, 2]] - 0.24) < 0.12).all(axis=1)
     motion[:, 0] = np.sin(20.0 * place[:, 2])
-    assert np.abs(squeezed(fluid)[inside]).max() < 1e-9  # of 2e4 that ∂u/∂z would make
+    assert np.abs(damper_input(fluid)[inside]).max() < 1e-9  # ∂u/∂z would give 2e4
 
 
 def test_damper_knows_the_flow_without_what_diffuses() -> None:
@@ -95,24 +97,24 @@ def test_damper_knows_the_flow_without_what_diffuses() -> None:
     fluid.state.position_density[:, 3] += np.random.default_rng(1).normal(
         0.0, 1.0, len(fluid.state.position_density)
     )
-    assert not squeezed(fluid).any()
+    assert not damper_input(fluid).any()
     assert np.abs(fluid.pairs.rates.rate[: fluid.state.fluid, 3]).min() > 0.0
 
 
 def steepest_of(kernel: Any, dimensions: int, length: float) -> float:
     """Greatest h |Σ V sin(k·r) ∇W| (1) on a lattice; h [1] in spacings."""
     axes = [np.arange(-4.0, 5.0)] * dimensions
-    apart = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, dimensions)
-    apart = apart[apart.any(axis=1)]
+    offsets = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, dimensions)
+    offsets = offsets[offsets.any(axis=1)]
     choice = smoothing(kernel, dimensions, length)
-    squares = (apart**2).sum(axis=1)
-    near = squares < (2.0 * length) ** 2
-    slopes = [gradient.py_func(r2, r2**-0.5, choice) for r2 in squares[near]]
-    slopes = np.array(slopes)[:, np.newaxis] * apart[near]
+    squares = (offsets**2).sum(axis=1)
+    is_near = squares < (2.0 * length) ** 2
+    slopes = [gradient.py_func(r2, r2**-0.5, choice) for r2 in squares[is_near]]
+    slopes = np.array(slopes)[:, np.newaxis] * offsets[is_near]
     largest = 0.0
     for direction in ([1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [1.0, 1.0, 1.0]):
         unit = np.array(direction[:dimensions]) / np.linalg.norm(direction[:dimensions])
-        phases = np.linspace(0.1, math.pi, 60)[:, np.newaxis] * (apart[near] @ unit)
+        phases = np.linspace(0.1, math.pi, 60)[:, np.newaxis] * (offsets[is_near] @ unit)
         largest = max(largest, np.linalg.norm(np.sin(phases) @ slopes, axis=1).max())
     return length * float(largest)
 
@@ -158,12 +160,12 @@ def test_step_limit_is_where_the_steepest_sound_grows(
 def test_surface_takes_what_the_fluid_gives(
     drop: Make, plate: Any, struck: Any, boundary: str
 ) -> None:
-    given = CALM | {
+    settings = CALM | {
         "acoustic_damper": 1.0,
         "boundary.method": boundary,
         "integration": "symplectic",
     }
-    fluid = drop(**given)
+    fluid = drop(**settings)
     fields: Fields = plate(fluid)
     mirror = fields["surface.position"] + [0.0, 0.0, 0.02]
     impulse, gained = struck(fluid, fields | {"surface.mirror": mirror})

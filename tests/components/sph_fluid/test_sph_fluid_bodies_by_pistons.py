@@ -17,8 +17,8 @@ def floating(tables):
     """Fluid in which a square of 4 spacings is held, half under water, and its samples."""
     fluid = SphFluid(fluid_params(**TANK_WITH_BLOCK | tables))
     edge, centre = 4.0 * SPACING, np.array([0.22, 0.5, 0.2])
-    across = (np.arange(4) - 1.5) * SPACING
-    arm = np.array([[x, 0.0, z] for x in across for z in across])
+    coordinates = (np.arange(4) - 1.5) * SPACING
+    arm = np.array([[x, 0.0, z] for x in coordinates for z in coordinates])
     outermost = np.abs(arm) == np.abs(arm).max(axis=1, keepdims=True)
     normal = np.where(outermost, np.sign(arm), 0.0)
     normal /= np.linalg.norm(normal, axis=1, keepdims=True)
@@ -44,7 +44,7 @@ def test_water_is_removed_inside_bodies_and_not_beside_pistons():
             fluid.take(fields)
             fluid.step(5e-4)
             loads.append(outputs_of(fluid)["surface_load.force"].sum(axis=0))
-    still, beside_piston = np.array(loads).reshape(2, 400, 3)
-    assert beside_piston == pytest.approx(still, abs=1e-6 * np.abs(still).max())
+    beside_obstacle, beside_piston = np.array(loads).reshape(2, 400, 3)
+    assert beside_piston == pytest.approx(beside_obstacle, abs=1e-6 * np.abs(beside_obstacle).max())
     weight = 9810.0 * 0.08 * 0.04  # N, of the water that 1 m of the square displaces
     assert beside_piston[200:, 2].mean() == pytest.approx(weight, rel=0.1)

@@ -32,36 +32,40 @@ DAM = {
 }
 
 
-def exported(mesh, folder, name="mesh.obj"):
+def export_mesh(mesh, folder, name="mesh.obj"):
     mesh.export(folder / name)
     return str(folder / name)
 
 
 def block(folder, low=LOW, high=HIGH, name="mesh.obj"):
-    return exported(trimesh.creation.box(bounds=[low, high]), folder, name)
+    return export_mesh(trimesh.creation.box(bounds=[low, high]), folder, name)
 
 
 def dam(*meshes, **options):
     return fluid_params(**(DAM | {"boundary.meshes": list(meshes)} | options))
 
 
-def matched(points, others):
+def match_points(points, other_points):
     """Greatest distance between points of two sets, and rows of the second, one for each."""
-    distance, row = cKDTree(others).query(points)
-    assert len(points) == len(others) == len(set(row.tolist()))
+    distance, row = cKDTree(other_points).query(points)
+    assert len(points) == len(other_points) == len(set(row.tolist()))
     return distance.max(), row
 
 
 @pytest.mark.parametrize("method", ["mdbc", "dbc"])
 @pytest.mark.parametrize(("name", "close"), [("mesh.obj", 1e-7), ("mesh.stl", 1e-6)])
 def test_a_box_from_a_file_has_the_particles_of_the_built_in_one(tmp_path, name, close, method):
-    box = fluid_params(**(DAM | {"boundary.obstacles": [(LOW, HIGH)], "boundary.method": method}))
-    file = dam({"file": block(tmp_path, name=name)}, **{"boundary.method": method})
-    points, mirrors = from_meshes(file)
-    distance, row = matched(points, obstacle_points(box))
+    box_params = fluid_params(
+        **(DAM | {"boundary.obstacles": [(LOW, HIGH)], "boundary.method": method})
+    )
+    mesh_params = dam({"file": block(tmp_path, name=name)}, **{"boundary.method": method})
+    points, mirrors = from_meshes(mesh_params)
+    distance, row = match_points(points, obstacle_points(box_params))
     assert distance < close
-    assert np.abs(mirrors - obstacle_mirrors(box)[row]).max() < close
-    assert particles(file) == particles(box) == len(state(file).position_density)
+    assert np.abs(mirrors - obstacle_mirrors(box_params)[row]).max() < close
+    assert (
+        particles(mesh_params) == particles(box_params) == len(state(mesh_params).position_density)
+    )
 
 
 def test_particles_begin_at_the_offset_that_the_scene_sets(tmp_path):
@@ -74,10 +78,10 @@ def test_particles_begin_at_the_offset_that_the_scene_sets(tmp_path):
 
 def test_water_meets_a_box_from_a_file_as_the_built_in_one(tmp_path):
     """Rows have another order, so that sums differ by rounding."""
-    box = fluid_params(**(DAM | {"boundary.obstacles": [(LOW, HIGH)]}))
-    file = dam({"file": block(tmp_path)})
+    box_params = fluid_params(**(DAM | {"boundary.obstacles": [(LOW, HIGH)]}))
+    mesh_params = dam({"file": block(tmp_path)})
     ends = []
-    for params in (box, file):
+    for params in (box_params, mesh_params):
         fluid, time = SphFluid(params), 0.0
         while time < 0.35:
             dt = min(fluid.stable_dt(), 0.35 - time)
@@ -95,10 +99,10 @@ def tank(folder, lid, name="tank.stl"):
     solid_mesh.apply_translation([0.0, 0.0, 0.2])
     if not lid:
         solid_mesh.update_faces(solid_mesh.triangles_center[:, 2] < 0.399)
-    return exported(solid_mesh, folder, name)
+    return export_mesh(solid_mesh, folder, name)
 
 
-def filled(file, surface, radius=0.19):
+def filled_tank(file, surface, radius=0.19):
     water = {"shape": "cylinder", "base": ORIGIN, "top": (0.0, 0.0, 0.2), "radius": radius}
     return fluid_params(
         spacing=0.025,
@@ -115,20 +119,20 @@ def filled(file, surface, radius=0.19):
 
 @pytest.mark.parametrize("surface", ["closed", "open"])
 def test_water_rests_in_a_round_tank_under_its_weight(tmp_path, surface):
-    params = filled(tank(tmp_path, surface == "closed"), surface)
+    params = filled_tank(tank(tmp_path, surface == "closed"), surface)
     fluid, time, readings = SphFluid(params), 0.0, []
     while time < 0.6:
         dt = fluid.stable_dt()
         fluid.step(dt)
         time += dt
         if time > 0.4:
-            wanted = frozenset(["pressure_gauge.pressure"])
-            readings.append(fluid.give(wanted)["pressure_gauge.pressure"])
-    shown = fluid.view()
-    points = shown["points"]
+            names = frozenset(["pressure_gauge.pressure"])
+            readings.append(fluid.give(names)["pressure_gauge.pressure"])
+    view = fluid.view()
+    points = view["points"]
     assert np.hypot(points[:, 0], points[:, 1]).max() < 0.2  # none leaves
     assert points[:, 2].min() > -0.5 * params.spacing
-    assert np.sqrt((shown["velocity"] ** 2).sum(axis=1).mean()) < 0.05  # m/s; √(g h) is 1.4
+    assert np.sqrt((view["velocity"] ** 2).sum(axis=1).mean()) < 0.05  # m/s; √(g h) is 1.4
     area = 24.0 * np.sin(2.0 * np.pi / 48.0) * 0.2**2  # m2, of the polygon
     level = fluid.totals().mass / (1000.0 * area)
     middle, aside, above = np.mean(readings, axis=0).ravel()
@@ -139,9 +143,9 @@ def test_water_rests_in_a_round_tank_under_its_weight(tmp_path, surface):
 
 
 def test_an_open_tank_has_no_particles_above_its_rim(tmp_path):
-    closed, _ = from_meshes(filled(tank(tmp_path, True), "closed"))
+    closed, _ = from_meshes(filled_tank(tank(tmp_path, True), "closed"))
     file = tank(tmp_path, False, "open.stl")
-    params = filled(file, "open")
+    params = filled_tank(file, "open")
     points, _ = from_meshes(params)
     assert points[:, 2].max() < 0.4 + 0.1 * params.spacing
     lower = (closed[:, 2] < 0.35).sum()
@@ -152,12 +156,12 @@ def test_an_open_tank_has_no_particles_above_its_rim(tmp_path):
 def test_the_volume_of_layers_is_measured_in_slabs(tmp_path, monkeypatch):
     sizes, depths = [], Surface.depths
 
-    def counted(surface, points):
+    def count_points(surface, points):
         sizes.append(len(points))
         return depths(surface, points)
 
-    monkeypatch.setattr(Surface, "depths", counted)
-    from_meshes(filled(tank(tmp_path, False), "open"))
+    monkeypatch.setattr(Surface, "depths", count_points)
+    from_meshes(filled_tank(tank(tmp_path, False), "open"))
     assert 24**3 <= max(sizes) < 3 * 24**3  # places in the box around, a spacing apart
 
 
@@ -168,33 +172,33 @@ def test_depths_are_those_of_the_nearest_place(tmp_path, shape):
         "ring": lambda: trimesh.creation.torus(0.5, 0.2, 16, 12),
         "brick": lambda: trimesh.creation.box(extents=(1.0, 0.6, 0.3)),
     }[shape]()
-    file = exported(solid_mesh, tmp_path)
-    measured = Surface(BoundaryMesh(file=file), 0.05, 0.15)
+    file = export_mesh(solid_mesh, tmp_path)
+    surface = Surface(BoundaryMesh(file=file), 0.05, 0.15)
     solid_mesh = trimesh.load_mesh(file)  # its digits
     rng = np.random.default_rng(3)
     places = rng.uniform(-0.8, 0.8, (600, 3))
-    below, normal = measured.depths(places)
-    near = np.abs(below) < 0.15
-    assert near.sum() > 50
+    depth, normal = surface.depths(places)
+    is_near = np.abs(depth) < 0.15
+    assert is_near.sum() > 50
     feet = mesh_files.nearest(places, solid_mesh.triangles)
     inside = mesh_files.inside(places, solid_mesh.triangles)
-    assert np.array_equal(below > 0.0, inside)
+    assert np.array_equal(depth > 0.0, inside)
     distance = np.linalg.norm(places - feet, axis=1)
-    assert np.abs(below)[near] == pytest.approx(distance[near], abs=1e-9)
-    ordinary = near & (np.linalg.norm(normal, axis=1) < 1.0 + 1e-9)
-    reached = places + below[:, None] * normal
-    assert np.abs(reached - feet)[ordinary].max() < 1e-7
-    assert (np.abs(below[~near]) > 0.15).all()
+    assert np.abs(depth)[is_near] == pytest.approx(distance[is_near], abs=1e-9)
+    ordinary = is_near & (np.linalg.norm(normal, axis=1) < 1.0 + 1e-9)
+    surface_places = places + depth[:, None] * normal
+    assert np.abs(surface_places - feet)[ordinary].max() < 1e-7
+    assert (np.abs(depth[~is_near]) > 0.15).all()
 
 
 def test_a_surface_is_scaled_turned_and_moved(tmp_path):
-    flat = block(tmp_path, (-1.0, -2.0, 0.0), (1.0, 2.0, 3.0))
+    flat_file = block(tmp_path, (-1.0, -2.0, 0.0), (1.0, 2.0, 3.0))
     half = 0.5**0.5
-    turned = {"scale": 0.1, "orientation": [half, 0.0, 0.0, half], "origin": [0.8, 0.4, 0.2]}
-    upright = block(tmp_path, (0.6, 0.3, 0.2), (1.0, 0.5, 0.5), "same.obj")
-    first, _ = from_meshes(dam({"file": flat} | turned))
-    second, _ = from_meshes(dam({"file": upright}))
-    distance, _ = matched(first, second)
+    transform = {"scale": 0.1, "orientation": [half, 0.0, 0.0, half], "origin": [0.8, 0.4, 0.2]}
+    upright_file = block(tmp_path, (0.6, 0.3, 0.2), (1.0, 0.5, 0.5), "same.obj")
+    first, _ = from_meshes(dam({"file": flat_file} | transform))
+    second, _ = from_meshes(dam({"file": upright_file}))
+    distance, _ = match_points(first, second)
     assert distance < 1e-9
 
 
@@ -206,32 +210,32 @@ def test_what_is_drawn_has_the_triangles(tmp_path):
 def open_box(folder):
     solid_mesh = trimesh.creation.box(bounds=[LOW, HIGH])
     solid_mesh.update_faces(np.arange(12) > 1)
-    return exported(solid_mesh, folder)
+    return export_mesh(solid_mesh, folder)
 
 
-def doubled(folder):
+def overlapping_boxes(folder):
     solid_mesh = trimesh.creation.box(bounds=[LOW, HIGH])
-    again = solid_mesh.copy()
-    again.apply_translation([0.1, 0.0, 0.0])
-    return exported(trimesh.util.concatenate([solid_mesh, again]), folder)
+    second_mesh = solid_mesh.copy()
+    second_mesh.apply_translation([0.1, 0.0, 0.0])
+    return export_mesh(trimesh.util.concatenate([solid_mesh, second_mesh]), folder)
 
 
-def mixed(folder):
+def mixed_triangles(folder):
     corners = [[0.6, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 0.4, 0.0], [0.6, 0.4, 0.0]]
     faces = [[0, 1, 2], [0, 3, 2]]
-    return exported(trimesh.Trimesh(corners, faces, process=False), folder)
+    return export_mesh(trimesh.Trimesh(corners, faces, process=False), folder)
 
 
 def fan(folder):
     corners = [[0.6, 0.0, 0.0], [1.0, 0.0, 0.0], [0.8, 0.4, 0.0], [0.8, 0.0, 0.4], [0.8, 0.4, 0.4]]
     faces = [[0, 1, 2], [0, 1, 3], [0, 1, 4]]
-    return exported(trimesh.Trimesh(corners, faces, process=False), folder)
+    return export_mesh(trimesh.Trimesh(corners, faces, process=False), folder)
 
 
 DEFECTS = {
     "hole": (open_box, {}, "must be a closed surface .* edges of 10 triangles without a partner"),
-    "overlap": (doubled, {}, r"enclose each part of its volume once; found .*%"),
-    "two sides": (mixed, {"surface": "open"}, "triangles that all look to the same side"),
+    "overlap": (overlapping_boxes, {}, r"enclose each part of its volume once; found .*%"),
+    "two sides": (mixed_triangles, {"surface": "open"}, "triangles that all look to the same side"),
     "three at an edge": (fan, {"surface": "open"}, "one or two triangles at each edge; found 1 "),
     "no fluid": (block, {"fluid_side": "back"}, r"all fluid 0.25 spac.* found 1280 of 1280 .*far"),
     "not a unit": (block, {"orientation": [1.0, 1.0, 0.0, 0.0]}, "of length 1; found 1.41421"),
@@ -245,22 +249,22 @@ def test_surfaces_that_cannot_be_walls_are_refused(tmp_path, make, keys, reason)
 
 
 def test_a_thin_plate_is_refused_with_its_thickness(tmp_path):
-    plate = block(tmp_path, (0.6, 0.2, 0.1), (0.69, 0.6, 0.5))
+    file = block(tmp_path, (0.6, 0.2, 0.1), (0.69, 0.6, 0.5))
     with pytest.raises(ValueError, match=r"2 spacings, 0.1 m, or more .*found 0.09 m behind"):
-        dam({"file": plate})
-    assert len(from_meshes(dam({"file": plate}, spacing=0.04))[0])
+        dam({"file": file})
+    assert len(from_meshes(dam({"file": file}, spacing=0.04))[0])
 
 
 def test_water_in_a_mesh_is_refused(tmp_path):
-    wet = block(tmp_path, (0.3, 0.2, 0.1), (0.6, 0.6, 0.5))
+    file = block(tmp_path, (0.3, 0.2, 0.1), (0.6, 0.6, 0.5))
     with pytest.raises(ValueError, match=r"found 128 of 1280 .*fluid\[0\] .* one 0.075 m behind"):
-        dam({"file": wet})
+        dam({"file": file})
 
 
 def test_water_that_touches_a_mesh_is_refused(tmp_path):
-    near = block(tmp_path, (0.38, 0.2, 0.1), (0.6, 0.6, 0.5))
+    file = block(tmp_path, (0.38, 0.2, 0.1), (0.6, 0.6, 0.5))
     with pytest.raises(ValueError, match=r"0.0125 m, or more before it; .*one 0.005 m before"):
-        dam({"file": near})
+        dam({"file": file})
 
 
 def test_meshes_that_overlap_are_refused(tmp_path):
@@ -273,23 +277,23 @@ def test_a_mesh_in_an_obstacle_is_refused(tmp_path):
     options = {"boundary.obstacles": [((0.9, 0.2, 0.0), (1.3, 0.6, 0.4))]}
     with pytest.raises(ValueError, match=r"not overlap boundary.obstacles\[0\]; 128 of its 492 "):
         dam({"file": block(tmp_path)}, **options)
-    beside = block(tmp_path, LOW, (0.9, 0.6, 0.4), "beside.obj")
-    dam({"file": beside}, **options)  # it may touch one
+    file = block(tmp_path, LOW, (0.9, 0.6, 0.4), "beside.obj")
+    dam({"file": file}, **options)  # it may touch one
 
 
 @pytest.mark.parametrize("method", ["mdbc", "dbc"])
 def test_a_mesh_has_no_particles_in_a_closed_wall_of_the_tank(tmp_path, method):
     options = {"boundary.method": method}
-    whole, _ = from_meshes(dam({"file": block(tmp_path)}, **options))
-    sunk = block(tmp_path, (*LOW[:2], -0.2), name="sunk.obj")
-    params = dam({"file": sunk}, **options)
+    standing_points, _ = from_meshes(dam({"file": block(tmp_path)}, **options))
+    sunk_file = block(tmp_path, (*LOW[:2], -0.2), name="sunk.obj")
+    params = dam({"file": sunk_file}, **options)
     points, _ = from_meshes(params)
-    apart, _ = cKDTree(wall_points(params)).query(points)
-    assert apart.min() > 0.99 * SPACING
-    distance, _ = matched(points[points[:, 2] > 0.0], whole)
+    wall_distance, _ = cKDTree(wall_points(params)).query(points)
+    assert wall_distance.min() > 0.99 * SPACING
+    distance, _ = match_points(points[points[:, 2] > 0.0], standing_points)
     assert distance < 1e-7
     options["boundary.open_faces"] = ["z-", "z+"]
-    points, _ = from_meshes(dam({"file": sunk}, **options))
+    points, _ = from_meshes(dam({"file": sunk_file}, **options))
     assert points[:, 2].min() < -0.1
 
 

@@ -33,8 +33,8 @@ TABLE: dict[str, Any] = {
 }
 
 
-def channel(**given: Any) -> SphFluid:
-    params, mistakes = read(SphFluidParams, nested(TABLE | given), "water")
+def channel(**changes: Any) -> SphFluid:
+    params, mistakes = read(SphFluidParams, nested(TABLE | changes), "water")
     assert not mistakes
     return SphFluid(params)
 
@@ -42,8 +42,8 @@ def channel(**given: Any) -> SphFluid:
 def poiseuille(z: np.ndarray, t: float) -> np.ndarray:
     """Morris, Fox & Zhu, eq. (31), of a flow that comes to SPEED."""
     k = (2 * np.arange(60)[:, None] + 1) * np.pi
-    start = (32.0 / k**3 * np.sin(k * z) * np.exp(-(k**2) * t)).sum(axis=0)
-    return SPEED * (4.0 * z * (1.0 - z) - start)
+    transient = (32.0 / k**3 * np.sin(k * z) * np.exp(-(k**2) * t)).sum(axis=0)
+    return SPEED * (4.0 * z * (1.0 - z) - transient)
 
 
 def couette(z: np.ndarray, t: float) -> np.ndarray:
@@ -53,23 +53,23 @@ def couette(z: np.ndarray, t: float) -> np.ndarray:
 
 
 @pytest.mark.parametrize(
-    ("given", "exact"),
+    ("changes", "exact"),
     [
         ({"gravity": [8.0 * SPEED, 0.0, 0.0]}, poiseuille),
         ({"boundary.wall_velocity": {"z+": [SPEED, 0.0, 0.0]}}, couette),
     ],
 )
-def test_flow_starts_as_the_series_says(given: dict[str, Any], exact: Any) -> None:
-    fluid, now, errors = channel(**given), 0.0, []
+def test_flow_starts_as_the_series_says(changes: dict[str, Any], exact: Any) -> None:
+    fluid, elapsed, errors = channel(**changes), 0.0, []
     for time in TIMES:
-        while now < time - 1e-12:
-            dt = min(fluid.stable_dt(), time - now)
+        while elapsed < time - 1e-12:
+            dt = min(fluid.stable_dt(), time - elapsed)
             fluid.step(dt)
-            now += dt
-        found = fluid.view()
-        middle = np.abs(found["points"][:, 0] - 0.5 * LENGTH) < 0.5
-        wanted = exact(found["points"][middle, 2], now)
-        errors.append(np.abs(found["velocity"][middle, 0] - wanted).max() / wanted.max())
+            elapsed += dt
+        view = fluid.view()
+        middle = np.abs(view["points"][:, 0] - 0.5 * LENGTH) < 0.5
+        expected = exact(view["points"][middle, 2], elapsed)
+        errors.append(np.abs(view["velocity"][middle, 0] - expected).max() / expected.max())
     assert max(errors) < 0.02, errors
 
 
@@ -87,8 +87,8 @@ def test_fluid_that_nothing_bears_has_no_weight() -> None:
     [("x+", [0.0, 0.0, 1.0]), ("z+", [0.0, 0.0, 1.0]), ("y-", [1.0, 0.0, 0.0])],
 )
 def test_a_wall_moves_only_in_its_own_plane(face: str, velocity: list[float]) -> None:
-    found, mistakes = read(
+    params, mistakes = read(
         SphFluidParams, nested(TABLE | {"boundary.wall_velocity": {face: velocity}}), "water"
     )
-    assert found is None
+    assert params is None
     assert f"wall_velocity.{face} must lie in a face that the tank has, z-, z+" in mistakes[0]

@@ -1,4 +1,4 @@
-"""What a fluid warns of: compression, loss, energy from nowhere; of still water nothing."""
+"""Warnings of a fluid: compression, loss, energy from nowhere; still water gives none."""
 
 from collections.abc import Callable, Mapping
 
@@ -19,13 +19,13 @@ def advance(fluid: SphFluid, steps: int) -> None:
         fluid.step(fluid.stable_dt())
 
 
-def changed(fluid: SphFluid, name: str, rows: slice, column: int, value: object) -> None:
+def change_rows(fluid: SphFluid, name: str, rows: slice, column: int, value: object) -> None:
     state = {key: np.array(array) for key, array in fluid.save().items()}
     state[name][rows, column] = value
     fluid.load(state)
 
 
-def made(**settings: object) -> Mapping[str, str]:
+def warnings_of(**settings: object) -> Mapping[str, str]:
     return SphFluid(fluid_params(**settings)).warnings()
 
 
@@ -38,27 +38,27 @@ def test_still_water_warns_of_nothing(pool: Make) -> None:
 def test_fluid_that_is_compressed_is_warned_of_and_the_warning_is_part_of_the_state(
     pool: Make,
 ) -> None:
-    """Of a fifth of the fluid the density is 8 % too high: a Mach number of 0.28."""
+    """The density of a fifth of the fluid is 8 % too high: a Mach number of 0.28."""
     fluid = pool()
-    changed(fluid, "position_density", slice(0, fluid.state.fluid // 5), 3, 1080.0)
+    change_rows(fluid, "position_density", slice(0, fluid.state.fluid // 5), 3, 1080.0)
     advance(fluid, 1)
     assert "density within 5%; 20% of it did not" in fluid.warnings()["compression"]
-    other = pool()
-    assert not other.warnings()
-    other.load(fluid.save())
-    assert other.warnings() == fluid.warnings()
+    loaded = pool()
+    assert not loaded.warnings()
+    loaded.load(fluid.save())
+    assert loaded.warnings() == fluid.warnings()
 
 
 def test_fluid_below_the_floor_of_its_tank_is_warned_of(pool: Make) -> None:
     fluid = pool()
-    changed(fluid, "position_density", slice(0, 10), 2, -0.05)
+    change_rows(fluid, "position_density", slice(0, 10), 2, -0.05)
     advance(fluid, 1)
     assert f"10 of {fluid.state.fluid} particles are beyond" in fluid.warnings()["loss"]
 
 
 def test_fluid_that_leaves_by_an_open_side_is_not(pool: Make) -> None:
     fluid = pool(**{"boundary.open_faces": ("x+", "z+")})
-    changed(fluid, "position_density", slice(0, 10), 0, 0.22)
+    change_rows(fluid, "position_density", slice(0, 10), 0, 0.22)
     advance(fluid, 1)
     assert not fluid.warnings()
 
@@ -66,14 +66,14 @@ def test_fluid_that_leaves_by_an_open_side_is_not(pool: Make) -> None:
 def test_motion_that_gravity_does_not_bring_is_warned_of(pool: Make) -> None:
     fluid = pool()
     advance(fluid, EVERY)
-    changed(fluid, "velocity_pressure", slice(0, fluid.state.fluid), 0, 0.3)
+    change_rows(fluid, "velocity_pressure", slice(0, fluid.state.fluid), 0, 0.3)
     advance(fluid, 1)
     assert "energy" in fluid.warnings()
 
 
 def test_a_flow_of_few_particles_is_warned_of(pool: Make) -> None:
     fluid = pool()  # five in the depth
-    changed(fluid, "velocity_pressure", slice(0, fluid.state.fluid), 0, 0.3)
+    change_rows(fluid, "velocity_pressure", slice(0, fluid.state.fluid), 0, 0.3)
     advance(fluid, 1)
     assert "found 5" in fluid.warnings()["resolution"]
 
@@ -87,12 +87,12 @@ def test_artificial_viscosity_beyond_the_fluids_own_is_warned_of(pool: Make) -> 
 def test_artificial_viscosity_that_thickens_a_flow_is_warned_of(pool: Make) -> None:
     """Re = sqrt(g d) d / ν, and ν = α h c₀ / 20; fluid at rest bears any."""
     assert not pool(**{"viscosity.artificial": 3.0}).warnings()
-    for alpha, told in ((3.0, True), (0.001, False)):
+    for alpha, warned in ((3.0, True), (0.001, False)):
         fluid = pool(**{"viscosity.artificial": alpha})
-        changed(fluid, "velocity_pressure", slice(0, fluid.state.fluid), 0, 0.3)
+        change_rows(fluid, "velocity_pressure", slice(0, fluid.state.fluid), 0, 0.3)
         advance(fluid, 1)
-        assert ("viscosity" in fluid.warnings()) == told
-        assert not told or "Reynolds number" in fluid.warnings()["viscosity"]
+        assert ("viscosity" in fluid.warnings()) == warned
+        assert not warned or "Reynolds number" in fluid.warnings()["viscosity"]
 
 
 def test_fluid_too_thick_to_gain_speed_is_warned_of_by_the_height_that_it_loses(
@@ -101,7 +101,7 @@ def test_fluid_too_thick_to_gain_speed_is_warned_of_by_the_height_that_it_loses(
     fluid = pool(**{"viscosity.artificial": 30.0})
     advance(fluid, 1)
     low = fluid.state.position_density[: fluid.state.fluid, 2] * 0.9
-    changed(fluid, "position_density", slice(0, fluid.state.fluid), 2, low)
+    change_rows(fluid, "position_density", slice(0, fluid.state.fluid), 2, low)
     advance(fluid, EVERY)
     assert "viscosity" in fluid.warnings()
 
@@ -111,8 +111,8 @@ def test_artificial_viscosity_that_damps_a_wave_is_warned_of() -> None:
     wave = {"amplitude": 0.02, "length": 1.0}
     tank = ((0.0, 0.0, 0.0), (1.0, 0.1, 0.5))
     scene = {"spacing": 0.05, "sound_speed": 22.2, "dimensions": 2, "fluid": (tank,), "wave": wave}
-    assert "wave must lose" in made(**scene)["viscosity"]
-    assert "viscosity" not in made(viscosity__artificial=0.01, **scene)
+    assert "wave must lose" in warnings_of(**scene)["viscosity"]
+    assert "viscosity" not in warnings_of(viscosity__artificial=0.01, **scene)
 
 
 def test_there_is_no_artificial_viscosity_beside_the_fluids_own_unless_asked_for(
@@ -149,4 +149,4 @@ def test_kernels_that_damp_a_wave_are_warned_of(
     tank = ((0.0, 0.0, 0.0), (1.0, 0.1, 0.5))
     scene = {"spacing": 0.05, "sound_speed": 22.2, "dimensions": 2, "fluid": (tank,)}
     scene["wave"] = {"amplitude": 0.02, "length": 1.0}
-    assert ("smoothing" in made(**scene, kernel=kernel, smoothing=smoothing)) == warned
+    assert ("smoothing" in warnings_of(**scene, kernel=kernel, smoothing=smoothing)) == warned

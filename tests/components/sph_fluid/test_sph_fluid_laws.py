@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from fluid_params import fluid_params, summed
+from fluid_params import fluid_params, pair_sums
 
 from quintet.components.shared.search.cells import grid_around, sorted_into
 from quintet.components.shared.search.neighbours import NeighbourLists, neighbours_within
@@ -31,7 +31,7 @@ def near(points: np.ndarray, spacing: float) -> NeighbourLists:
     return neighbours_within(REACH * spacing, points, len(points), Team(1))
 
 
-def law(spacing: float, smoothing: float = 1.5, dimensions: int = 3, **given: Any) -> PairLaw:
+def law(spacing: float, smoothing: float = 1.5, dimensions: int = 3, **changes: Any) -> PairLaw:
     box = ((0.0, 0.0, 0.0), (1.0, 1.0, 1.0))
     settings = {
         "spacing": spacing,
@@ -39,8 +39,8 @@ def law(spacing: float, smoothing: float = 1.5, dimensions: int = 3, **given: An
         "sound_speed": 40.0,
         "viscosity.artificial": 0.0,
     }
-    given = {**settings, **{name.replace("__", "."): value for name, value in given.items()}}
-    return pair_law(fluid_params(fluid=(box,), dimensions=dimensions, **given))
+    changes = {**settings, **{name.replace("__", "."): value for name, value in changes.items()}}
+    return pair_law(fluid_params(fluid=(box,), dimensions=dimensions, **changes))
 
 
 def rates(
@@ -51,7 +51,7 @@ def rates(
     motion = np.column_stack([velocity, np.zeros(len(points))])
     write_pressure(fluid.constants, place, motion)
     lists = near(points, fluid.constants.smoothing.length / 1.5).arrays
-    return summed(fluid, place, motion, lists, len(points))
+    return pair_sums(fluid, place, motion, lists, len(points))
 
 
 def test_continuity_converges_to_the_divergence_at_second_order() -> None:
@@ -60,10 +60,10 @@ def test_continuity_converges_to_the_divergence_at_second_order() -> None:
         points = lattice(round(1.2 / spacing), spacing)
         velocity = np.zeros_like(points)
         velocity[:, 0] = np.sin(3.0 * points[:, 0])
-        found = rates(points, velocity, np.full(len(points), 1000.0), law(spacing))[:, 3]
+        density_rate = rates(points, velocity, np.full(len(points), 1000.0), law(spacing))[:, 3]
         inside = (np.abs(points) < 0.15).all(axis=1)
         exact = -1000.0 * 3.0 * np.cos(3.0 * points[inside, 0])
-        errors.append(np.abs(found[inside] - exact).max() / 3000.0)
+        errors.append(np.abs(density_rate[inside] - exact).max() / 3000.0)
     assert errors[1] < 0.01
     assert errors[0] > 2.5 * errors[1]
 
@@ -76,10 +76,10 @@ def test_pressure_gradient_converges_at_second_order() -> None:
         # Small waves on a small pressure, for the lattice's mass per volume is ρ₀ exactly.
         pressure = 1000.0 * (2.0 + np.sin(3.0 * points[:, 0]))
         density = 1000.0 * (pressure / fluid.constants.stiffness + 1.0) ** (1.0 / 7.0)
-        found = rates(points, np.zeros_like(points), density, fluid)[:, 0]
+        acceleration = rates(points, np.zeros_like(points), density, fluid)[:, 0]
         inside = (np.abs(points) < 0.15).all(axis=1)
         exact = -3.0 * np.cos(3.0 * points[inside, 0])
-        errors.append(np.abs(found[inside] - exact).max() / 3.0)
+        errors.append(np.abs(acceleration[inside] - exact).max() / 3.0)
     assert errors[1] < 0.02
     assert errors[0] > 2.5 * errors[1]
 
@@ -91,10 +91,10 @@ def test_viscosity_acts_on_approach_only() -> None:
 
 
 def test_pressure_is_cut_unless_it_may_be_negative() -> None:
-    cut = law(0.1).constants
-    assert laws.tait.py_func(990.0, cut) == 0.0
+    numbers = law(0.1).constants
+    assert laws.tait.py_func(990.0, numbers) == 0.0
     assert laws.tait.py_func(990.0, law(0.1, negative_pressure=True).constants) < 0.0
-    slope = (laws.tait.py_func(1000.001, cut) - 0.0) / 0.001
+    slope = (laws.tait.py_func(1000.001, numbers) - 0.0) / 0.001
     assert slope == pytest.approx(40.0**2, rel=1e-4)
 
 

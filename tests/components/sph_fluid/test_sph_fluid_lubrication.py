@@ -42,7 +42,7 @@ def standing(gaps, heights=(0.5 * EDGE,), fluid=AROUND):
         boundary__walls=((0.0,) * 3, (WIDTH, WIDTH, 0.35)),
         boundary__lubrication_films=gaps,
     )
-    one = SphFluid(params)
+    solver = SphFluid(params)
     arm, image = cube()
     centres = [np.array([0.5 * WIDTH, 0.5 * WIDTH, height]) for height in heights]
     static = {
@@ -50,20 +50,20 @@ def standing(gaps, heights=(0.5 * EDGE,), fluid=AROUND):
         "surface.volume": np.full(len(arm) * len(centres), SPACING**3),
         "surface.body": np.repeat(np.arange(len(centres)), len(arm)).astype(float),
     }
-    one.bind(static, JOINED)
+    solver.bind(static, JOINED)
     position = np.concatenate([centre + arm for centre in centres])
     moves = {"surface.position": position, "surface.velocity": np.zeros_like(position)}
-    one.take({**moves, "surface.mirror": np.concatenate([c + image for c in centres])})
-    return one
+    solver.take({**moves, "surface.mirror": np.concatenate([c + image for c in centres])})
+    return solver
 
 
-def mean_force(one, steps):
-    found = []
+def mean_force(fluid, steps):
+    forces = []
     for number in range(steps):
-        one.step(one.stable_dt())
+        fluid.step(fluid.stable_dt())
         if number >= steps // 2:
-            found.append(outputs_of(one)["surface_load.force"].reshape(-1, 64, 3).sum(axis=1))
-    return np.mean(found, axis=0)
+            forces.append(outputs_of(fluid)["surface_load.force"].reshape(-1, 64, 3).sum(axis=1))
+    return np.mean(forces, axis=0)
 
 
 def test_a_cube_that_stands_in_water_is_lifted_by_the_film_below_it():
@@ -76,14 +76,14 @@ def test_a_cube_that_stands_in_water_is_lifted_by_the_film_below_it():
 
 
 def test_a_film_presses_both_bodies_alike():
-    one = standing(True, heights=(0.5 * EDGE, 1.5 * EDGE + 0.004), fluid=AROUND[:4])
+    fluid = standing(True, heights=(0.5 * EDGE, 1.5 * EDGE + 0.004), fluid=AROUND[:4])
     for _ in range(5):
-        one.step(one.stable_dt())
-    before = one.state.force.copy()
-    one.films.advance(one.state, one.lists.arrays, 1e-4)
-    added, between = one.state.force - before, one.films.films.facing >= 0
-    upper = added[one.films.films.sample[between]].sum(axis=0)
-    lower = added[np.unique(one.films.films.facing[between])].sum(axis=0)
+        fluid.step(fluid.stable_dt())
+    before = fluid.state.force.copy()
+    fluid.films.advance(fluid.state, fluid.lists.arrays, 1e-4)
+    added, between = fluid.state.force - before, fluid.films.films.facing >= 0
+    upper = added[fluid.films.films.sample[between]].sum(axis=0)
+    lower = added[np.unique(fluid.films.films.facing[between])].sum(axis=0)
     assert between.sum() == 16
     assert upper[2] > 0.0
     np.testing.assert_allclose(lower, -upper, rtol=1e-12, atol=1e-12 * upper[2])
@@ -95,8 +95,8 @@ def squeeze(stored, cell, outside=1000.0, sweeps=400):
     rim = np.zeros(count, bool)
     rim[[0, -1]] = True
     pairs = [[j for j in (i - 1, i + 1) if 0 <= j < count] for i in range(count)]
-    begin = np.concatenate([[0], np.cumsum([len(some) for some in pairs])])
-    near = np.array([j for some in pairs for j in some])
+    begin = np.concatenate([[0], np.cumsum([len(neighbours) for neighbours in pairs])])
+    near = np.array([j for neighbours in pairs for j in neighbours])
     width, mobility = np.full(count, 1e-3), np.full(count, 1e-9 / (12.0 * lubrication.WATER))
     place = np.stack([np.arange(count) * 0.01, np.zeros(count), np.zeros(count)], axis=1)
     rims = np.full(count, outside)
@@ -137,13 +137,13 @@ def test_a_dry_rim_lets_nothing_in():
 
 
 def test_a_loaded_state_goes_on_with_the_same_bits():
-    one, other = standing(True), standing(True)
+    fluid, loaded = standing(True), standing(True)
     for _ in range(12):
-        one.step(one.stable_dt())
-    other.load(one.save())
+        fluid.step(fluid.stable_dt())
+    loaded.load(fluid.save())
     for _ in range(12):
-        one.step(one.stable_dt())
-        other.step(other.stable_dt())
-    for name, array in one.save().items():
-        np.testing.assert_array_equal(array, other.save()[name], err_msg=name)
-    assert one.state.film.any()
+        fluid.step(fluid.stable_dt())
+        loaded.step(loaded.stable_dt())
+    for name, array in fluid.save().items():
+        np.testing.assert_array_equal(array, loaded.save()[name], err_msg=name)
+    assert fluid.state.film.any()

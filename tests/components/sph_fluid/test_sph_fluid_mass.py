@@ -1,4 +1,4 @@
-"""Fluid weighs what was asked for, whatever the spacing; or it is refused."""
+"""Fluid has the mass of its shapes at any spacing, or the scene is refused."""
 
 import math
 
@@ -14,10 +14,10 @@ from quintet.interfaces.params import read
 SPACING = 0.02
 
 
-def pool(size, **given):
+def pool(size, **changes):
     box = ((0.0, 0.0, 0.0), tuple(size))
     settings = {"spacing": SPACING, "sound_speed": 30.0, "fluid": (box,)}
-    return fluid_params(**(settings | given))
+    return fluid_params(**(settings | changes))
 
 
 @pytest.mark.parametrize(
@@ -36,8 +36,8 @@ def test_a_box_weighs_what_it_holds(size):
 
 
 def test_a_slab_weighs_what_it_holds():
-    one = pool((0.11, 0.3, 0.05), dimensions=2)
-    assert SphFluid(one).totals().mass == pytest.approx(1000.0 * 0.11 * 0.3 * 0.05, rel=1e-9)
+    params = pool((0.11, 0.3, 0.05), dimensions=2)
+    assert SphFluid(params).totals().mass == pytest.approx(1000.0 * 0.11 * 0.3 * 0.05, rel=1e-9)
 
 
 def test_where_the_spacing_divides_all_edges_a_particle_has_its_cube():
@@ -61,7 +61,7 @@ def test_boxes_that_would_hold_too_much_or_too_little_are_refused():
     (sentence,) = mistakes(deep, [[0.2, 0.0, 0.0], [0.8, 0.2, 0.011]])
     assert "fluid[0] must hold its mass of fluid within 2 % of that of all" in sentence
     assert "Choose a spacing" in sentence
-    # What is off by less than that of the whole may stay.
+    # A box is accepted if its error is small beside the mass of all fluid.
     assert mistakes(deep, [[0.2, 0.0, 0.0], [0.22, 0.02, 0.029]]) == []
 
 
@@ -79,7 +79,7 @@ def test_water_whose_edges_the_spacing_does_not_divide_stays_at_rest():
     )
     for _ in range(150):
         fluid.step(fluid.stable_dt())
-    found = fluid.give(frozenset({"level_gauge.height", "motion_gauge.speed"}))
-    assert found["level_gauge.height"] == pytest.approx([top], abs=0.1 * SPACING)
-    assert found["motion_gauge.speed"][0] < 0.03 * math.sqrt(9.81 * top)
+    readings = fluid.give(frozenset({"level_gauge.height", "motion_gauge.speed"}))
+    assert readings["level_gauge.height"] == pytest.approx([top], abs=0.1 * SPACING)
+    assert readings["motion_gauge.speed"][0] < 0.03 * math.sqrt(9.81 * top)
     assert np.isfinite(fluid.state.position_density).all()

@@ -1,4 +1,4 @@
-"""What came and what left: each particle is in the mass balance once, under its reason."""
+"""The mass balance counts each particle that came or left once, under its reason."""
 
 from typing import Any
 
@@ -15,7 +15,7 @@ FLUID = (((0.0, 0.0, 0.0), (0.1, 0.1, 0.1)),)
 MASS = 1000.0 * 0.02**3  # kg, of a particle
 
 
-def tank(**given: Any) -> SphFluid:
+def tank(**changes: Any) -> SphFluid:
     """A cube of 125 particles in a tank open at x+ and z+."""
     settings: dict[str, Any] = {
         "spacing": 0.02,
@@ -24,7 +24,7 @@ def tank(**given: Any) -> SphFluid:
         "boundary__walls": ((0.0, 0.0, 0.0), (0.1, 0.1, 0.2)),
         "boundary__open_faces": ("x+", "z+"),
     }
-    return SphFluid(fluid_params(**(settings | given)))
+    return SphFluid(fluid_params(**(settings | changes)))
 
 
 def throw(fluid: SphFluid, rows: Any, place: tuple[float, float, float]) -> None:
@@ -82,23 +82,23 @@ def test_what_comes_back_into_the_tank_is_forgiven() -> None:
 
 
 def test_losses_are_saved() -> None:
-    fluid, other = tank(), tank()
+    fluid, loaded = tank(), tank()
     throw(fluid, [0], (-0.35, 0.05, 0.05))
-    other.load(fluid.save())
-    assert balance(other) == balance(fluid)
+    loaded.load(fluid.save())
+    assert balance(loaded) == balance(fluid)
 
 
 def test_the_run_ends_where_more_is_lost_than_allowed_and_names_the_first() -> None:
     fluid = tank(lost_limit=0.01)
     throw(fluid, [7], (-0.35, 0.05, 0.04))
-    with pytest.raises(StepError) as caught:
+    with pytest.raises(StepError) as error:
         throw(fluid, [0], (0.35, 0.05, 0.05))
-    text = str(caught.value)
+    text = str(error.value)
     assert "at most 0.01 of the fluid may be lost (lost_limit); 2 of 125 particles are" in text
     assert "1 lost through the wall x-, 1 lost outside the domain, over the open face x+" in text
     assert "The first, particle 7, left the tank through the wall x-" in text
     assert "was lost at (-0.35, 0.05, 0.04) m" in text
-    assert caught.value.place == pytest.approx((-0.35, 0.05, 0.04))
+    assert error.value.place == pytest.approx((-0.35, 0.05, 0.04))
 
 
 def test_a_limit_of_losses_needs_a_tank() -> None:

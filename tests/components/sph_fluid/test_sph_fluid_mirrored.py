@@ -1,4 +1,4 @@
-"""Mirrored walls: where they look, what they find there, and that nothing passes them."""
+"""Mirrored walls: their mirror points, their density, and that no fluid passes them."""
 
 import math
 import sys
@@ -16,9 +16,9 @@ TANK = {
 }
 
 
-def params(**given):
+def params(**changes):
     settings = {"spacing": 0.05, "sound_speed": 20.0 * math.sqrt(9.81 * 0.4), **TANK}
-    return fluid_params(**(settings | {"boundary.method": "mdbc"} | given))
+    return fluid_params(**(settings | {"boundary.method": "mdbc"} | changes))
 
 
 def walls(fluid):
@@ -60,7 +60,7 @@ def test_dry_walls_press_nothing():
     assert (particle[dry, 3] == 1000.0).all()
 
 
-def still(boundary, steps, **given):
+def errors_at_rest(boundary, steps, **changes):
     """Largest error of pressure over ρgH, and speed over √(gH), of water at rest."""
     fluid = SphFluid(
         params(
@@ -69,7 +69,7 @@ def still(boundary, steps, **given):
             kernel="wendland",  # as fluids of other tests are compiled
             density_diffusion=0.1,
             negative_pressure=True,
-            **given,
+            **changes,
         )
     )
     for _ in range(steps):
@@ -82,10 +82,10 @@ def still(boundary, steps, **given):
 
 
 def test_still_water_stays_hydrostatic_with_mirrored_walls_alone():
-    error, speed = still("mdbc", 2000)
+    error, speed = errors_at_rest("mdbc", 2000)
     assert error < 0.03
     assert speed < 0.03
-    assert still("dbc", 2000)[0] > 3 * error
+    assert errors_at_rest("dbc", 2000)[0] > 3 * error
 
 
 def test_water_thrown_at_a_wall_stays_inside():
@@ -105,9 +105,9 @@ def test_water_thrown_at_a_wall_stays_inside():
 def test_obstacles_are_mirrored_in_their_wet_faces():
     box = ((0.3, 0.0, 0.0), (0.5, 0.4, 0.2))
     fluid = (((0.0, 0.0, 0.0), (0.3, 0.4, 0.4)),)
-    one = params(boundary__obstacles=(box,), fluid=fluid)
-    count = len(wall_points(one))
-    particle, mirror = walls(SphFluid(one))
+    parameters = params(boundary__obstacles=(box,), fluid=fluid)
+    count = len(wall_points(parameters))
+    particle, mirror = walls(SphFluid(parameters))
     place, mirror = particle[count:, :3], mirror[count:]
     assert len(place) > 0
     inside = (mirror > np.array(box[0]) + 1e-9) & (mirror < np.array(box[1]) - 1e-9)
@@ -130,12 +130,12 @@ def test_only_a_scene_that_asks_imports_them():
         "f.step(1e-5); names = {m.rpartition('.')[2] for m in sys.modules};"
         "print(sorted(names & {'mirrored', 'mirrored_density', 'lubrication', 'film_geometry'}))"
     )
-    found = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
-    assert found.stdout.strip() == "[]", found.stderr
+    result = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
+    assert result.stdout.strip() == "[]", result.stderr
 
 
 @pytest.mark.parametrize(
-    ("given", "sentence"),
+    ("changes", "sentence"),
     [
         ({"boundary.wall_offset": 1.5}, "half a spacing behind the face; found wall_offset 1.5"),
         (
@@ -149,6 +149,6 @@ def test_only_a_scene_that_asks_imports_them():
         ),
     ],
 )
-def test_mistakes_are_told(given, sentence):
+def test_mistakes_are_told(changes, sentence):
     with pytest.raises(ValueError, match=sentence):
-        params(**given)
+        params(**changes)

@@ -1,4 +1,4 @@
-"""What the fluid does: exact motions, conservation, rest, and the limit of the step."""
+"""Motion of the fluid: exact motions, conservation, rest, and the limit of the step."""
 
 import math
 from collections.abc import Callable
@@ -37,11 +37,11 @@ def stir(fluid: SphFluid, seed: int = 3) -> None:
 
 def run(fluid: SphFluid, time: float) -> None:
     """Step for a time [s], in steps that the fluid allows."""
-    left = time
-    while left > 0.0:
-        pieces = math.ceil(left / fluid.stable_dt() - 1e-9)
-        fluid.step(left / pieces)
-        left = 0.0 if pieces == 1 else left - left / pieces
+    remaining = time
+    while remaining > 0.0:
+        pieces = math.ceil(remaining / fluid.stable_dt() - 1e-9)
+        fluid.step(remaining / pieces)
+        remaining = 0.0 if pieces == 1 else remaining - remaining / pieces
 
 
 def test_free_fall_is_a_parabola(drop: Make) -> None:
@@ -92,16 +92,16 @@ def test_surface_takes_what_the_fluid_loses(drop: Make, plate: Join) -> None:
     fluid = drop(gravity=(0.0, 0.0, 0.0))
     stir(fluid)
     fluid.take(plate(fluid))
-    given, size, before = np.zeros(3), 0.0, fluid.totals().momentum
+    impulse, size, before = np.zeros(3), 0.0, fluid.totals().momentum
     for _ in range(30):
         dt = fluid.stable_dt()
         fluid.step(dt)
         force = outputs_of(fluid)["surface_load.force"]
-        given += dt * force.sum(axis=0)
+        impulse += dt * force.sum(axis=0)
         size += dt * np.abs(force).sum()
     gained = fluid.totals().momentum - before
     assert gained[2] > 0.0 and size > 0.0
-    assert given + gained == pytest.approx(np.zeros(3), abs=1e-12 * size)
+    assert impulse + gained == pytest.approx(np.zeros(3), abs=1e-12 * size)
 
 
 @pytest.mark.parametrize("share", [1.0, 0.6])
@@ -156,8 +156,8 @@ def test_falling_water_gains_no_energy(pool: Make) -> None:
     energies = []
     for _ in range(10):
         run(fluid, 0.02)
-        now = fluid.totals()
-        energies.append(now.kinetic + now.potential + now.internal)
+        totals = fluid.totals()
+        energies.append(totals.kinetic + totals.potential + totals.internal)
     assert max(energies) == energies[0]
     assert energies[-1] < 0.9 * energies[0]
     assert fluid.view()["points"][:, 0].max() > 0.12  # it ran out along the floor
@@ -183,8 +183,8 @@ def test_two_half_windows_come_to_the_same_as_one(pool: Make) -> None:
 
 
 def test_options_change_the_motion_but_not_the_rest(pool: Make) -> None:
-    for given in ({"xsph": 0.5}, {"shepard_every": 20}, {"negative_pressure": True}):
-        fluid = pool(**given)
+    for options in ({"xsph": 0.5}, {"shepard_every": 20}, {"negative_pressure": True}):
+        fluid = pool(**options)
         run(fluid, 0.2)
         assert fluid.totals().kinetic < 1e-3 * fluid.totals().mass * 9.81 * 0.1
 
@@ -226,12 +226,12 @@ def test_what_strikes_faster_than_half_of_sound_is_an_error(
     fields["surface.mirror"] = fields["surface.position"] + [0.0, 0.0, 0.02]
 
     def strike() -> None:
-        moved = 0.0
-        while moved < 0.06:
+        distance = 0.0
+        while distance < 0.06:
             fluid.take(fields)
             dt = fluid.stable_dt()
             fluid.step(dt)
-            moved += speed * dt
+            distance += speed * dt
             for name in ("position", "mirror"):
                 fields[f"surface.{name}"][:, 2] += speed * dt
 
@@ -271,8 +271,8 @@ def test_bits_do_not_depend_on_the_number_of_threads(pool: Make, precision: str)
         for _ in range(40):
             fluid.step(fluid.stable_dt())
         ends.append(fluid.save())
-    mine, *others = ends
-    assert all(np.array_equal(mine[name], other[name]) for other in others for name in mine)
+    first, *repeats = ends
+    assert all(np.array_equal(first[name], repeat[name]) for repeat in repeats for name in first)
 
 
 def test_lists_are_renewed_before_a_pair_is_missed(pool: Make) -> None:
@@ -281,11 +281,11 @@ def test_lists_are_renewed_before_a_pair_is_missed(pool: Make) -> None:
     reach = fluid.constants.smoothing.support
     for _ in range(30):
         fluid.step(fluid.stable_dt())
-        old = fluid.state.position_density.copy()
+        position = fluid.state.position_density.copy()
         if fluid.lists.need_rebuild(fluid.state, fluid.boundary, 0.0):
             continue
         near = fluid.lists.near
-        distance = np.linalg.norm(old[:, None, :3] - old[None, :10, :3], axis=2)
+        distance = np.linalg.norm(position[:, None, :3] - position[None, :10, :3], axis=2)
         for i in range(10):
             listed = set(near.list[near.begin[i] : near.end[i]].tolist())
             assert set(np.flatnonzero(distance[:, i] < reach).tolist()) <= listed

@@ -16,11 +16,11 @@ DROP = ((0.4, -0.1, 0.3), (0.6, 0.1, 0.5))  # far from all walls
 SCHEMES = {"extrapolated": 4e-4, "symplectic": 1e-3}  # s, steps
 
 
-def fluid_in(motion, **more):
+def fluid_in(motion, **changes):
     """A fluid in a tank with a motion, by its keys."""
     tables = {f"boundary.motion.{key}": value for key, value in motion.items()}
     settings = {"spacing": SPACING, "sound_speed": 20.0, "boundary.walls": BOX, "fluid": [DROP]}
-    return SphFluid(fluid_params(**(settings | more | tables)))
+    return SphFluid(fluid_params(**(settings | changes | tables)))
 
 
 def in_world(points, motion, time):
@@ -96,8 +96,8 @@ def test_a_tank_that_speeds_up_steadily_holds_fluid_as_inclined_gravity_does():
         "density_diffusion": 0.1,
         "gauges.pressure_gauges": [[0.0, 0.15, 0.1], [1.0, 0.15, 0.0]],
     }
-    sped = {"times": times, "displacement": [[0.5 * 2.0 * t * t, 0.0, 0.0] for t in times]}
-    moving = fluid_in(sped, sound_speed=25.0, **tank)
+    motion = {"times": times, "displacement": [[0.5 * 2.0 * t * t, 0.0, 0.0] for t in times]}
+    moving = fluid_in(motion, sound_speed=25.0, **tank)
     settings = {"spacing": SPACING, "sound_speed": 25.0, "gravity": (-2.0, 0.0, -9.81)}
     still = SphFluid(fluid_params(**settings, **tank))
     # Both start from the same pressure.

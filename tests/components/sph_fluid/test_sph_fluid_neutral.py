@@ -1,4 +1,4 @@
-"""Fixed bodies deep in water at rest: it pushes them up by the weight of what they displace."""
+"""Fixed bodies deep in water at rest are pushed up by the weight of the displaced water."""
 
 import math
 
@@ -26,7 +26,7 @@ AROUND = (
 )
 
 
-def sunk(shape: int, cells: int = 5, **given: object) -> SphFluid:
+def sunken_body(shape: int, cells: int = 5, **changes: object) -> SphFluid:
     """Water around a body in the middle of the tank, with so many samples along a box's edge."""
     settings = {
         "spacing": SPACING,
@@ -37,35 +37,35 @@ def sunk(shape: int, cells: int = 5, **given: object) -> SphFluid:
         "density_diffusion": 0.1,
         "negative_pressure": True,
     }
-    fluid = SphFluid(fluid_params(**(settings | given)))
-    stated, size = fluid.describe(), np.full(3, EDGE)
-    depth = float(stated["surface.depth"][0])
+    fluid = SphFluid(fluid_params(**(settings | changes)))
+    description, size = fluid.describe(), np.full(3, EDGE)
+    depth = float(description["surface.depth"][0])
     arm, normal, volume = fill(shape, size, EDGE / cells, depth)
     body = np.zeros(len(arm))
     fluid.bind({"surface.normal": normal, "surface.volume": volume, "surface.body": body}, JOINED)
-    moved = {"position": arm, "mirror": mirrors(shape, size, arm, normal)}
-    placed = {f"surface.{key}": points + 0.5 * SIDE for key, points in moved.items()}
-    fluid.take(placed | {"surface.velocity": np.zeros_like(arm)})
+    arms = {"position": arm, "mirror": mirrors(shape, size, arm, normal)}
+    fields = {f"surface.{key}": points + 0.5 * SIDE for key, points in arms.items()}
+    fluid.take(fields | {"surface.velocity": np.zeros_like(arm)})
     return fluid
 
 
 def push(fluid: SphFluid, begin: float, end: float) -> np.ndarray:
     """Mean force on the body between two times [s]; (3,) N."""
-    time, spent, impulse = 0.0, 0.0, np.zeros(3)
+    time, duration, impulse = 0.0, 0.0, np.zeros(3)
     while time < end:
         dt = fluid.stable_dt()
         fluid.step(dt)
         time += dt
         if time > begin:
-            spent += dt
+            duration += dt
             impulse += dt * outputs_of(fluid)["surface_load.force"].sum(axis=0)
-    return impulse / spent
+    return impulse / duration
 
 
 @pytest.mark.parametrize("cells", [4, 5, 6])
 def test_a_box_is_pushed_up_by_the_weight_of_its_water(cells: int) -> None:
     # As many samples as particles along an edge, or a fourth fewer or a fifth more.
-    force = push(sunk(BOX, cells), 0.5, 0.8) / (WEIGHT * EDGE**3)
+    force = push(sunken_body(BOX, cells), 0.5, 0.8) / (WEIGHT * EDGE**3)
     assert force[2] == pytest.approx(1.0, abs=0.01)
     assert np.abs(force[:2]).max() < 1e-3
 
@@ -92,13 +92,13 @@ def test_the_potential_pushes_a_box_up_by_the_weight_of_its_water(
 ) -> None:
     side, top = edge + 6, below + edge + above
     tank = ((0.0, 0.0, 0.0), (side * spacing, side * spacing, (top + 3) * spacing))
-    given = {
+    settings = {
         "fluid": around(edge, side, below, above, spacing),
         "boundary.walls": tank,
         "boundary.wall_viscosity_factor": 0.0,
     }
     sound = 10.2 * math.sqrt(9.81 * top * spacing)
-    how = {
+    terms = {
         "kernel": "wendland",
         "integration": "symplectic",
         "courant": 1.0,
@@ -111,8 +111,8 @@ def test_the_potential_pushes_a_box_up_by_the_weight_of_its_water(
             boundary__method="potential",
             density_diffusion=0.1,
             negative_pressure=True,
-            **given,
-            **how,
+            **settings,
+            **terms,
         )
     )
     size = np.full(3, edge * spacing)
@@ -120,7 +120,7 @@ def test_the_potential_pushes_a_box_up_by_the_weight_of_its_water(
     body = np.zeros(len(arm))
     fluid.bind({"surface.normal": normal, "surface.volume": volume, "surface.body": body}, JOINED)
     middle = spacing * np.array([0.5 * side, 0.5 * side, below + 0.5 * edge])
-    # What it is given where it is placed at first is not kept.
+    # The body is placed twice; values of its first place are not kept.
     for place in (middle + 2.0 * spacing, middle):
         fluid.take({"surface.position": arm + place, "surface.velocity": np.zeros_like(arm)})
     force = push(fluid, 0.2, 0.5) / (WEIGHT * size[0] ** 3)
@@ -128,21 +128,21 @@ def test_the_potential_pushes_a_box_up_by_the_weight_of_its_water(
     assert np.abs(force[:2]).max() < 1e-3
     # Nothing has moved, and the pressure at the floor is that of the water above it.
     assert np.linalg.norm(fluid.view()["velocity"], axis=1).max() < 0.01
-    points, found = fluid.view()["points"], fluid.view()["pressure"]
+    points, pressure = fluid.view()["points"], fluid.view()["pressure"]
     deep = points[:, 2] < 2.0 * spacing
     expected = WEIGHT * (top * spacing - points[deep, 2])
-    assert found[deep] == pytest.approx(expected, rel=0.03)
+    assert pressure[deep] == pytest.approx(expected, rel=0.03)
 
 
 @pytest.mark.slow
 def test_a_sphere_is_pushed_up_by_the_weight_of_its_water() -> None:
-    fluid = sunk(SPHERE, fluid=(*AROUND, *corners()))
-    # Water below an overhang starts without the pressure of what is beside and above it.
+    fluid = sunken_body(SPHERE, fluid=(*AROUND, *corners()))
+    # Water below an overhang starts without the pressure of the water beside and above it.
     state, rows = fluid.state, slice(fluid.state.fluid)
     depth = SIDE - state.position_density[rows, 2]
     state.position_density[rows, 3] = 1000.0 + WEIGHT * depth / fluid.params.sound_speed**2
     write_pressure(fluid.constants, state.position_density, state.velocity_pressure)
-    # What starts in the corners of the sphere's box has to find its place first.
+    # Water in the corners of the sphere's box has to settle first.
     force = push(fluid, 1.6, 2.0) / (WEIGHT * math.pi / 6.0 * EDGE**3)
     assert force[2] == pytest.approx(1.0, abs=0.01)
     assert np.abs(force[:2]).max() < 0.01

@@ -17,9 +17,9 @@ WATER = ((0.0, 0.0, 0.0), (0.5, 0.4, 0.4))
 BOX = ((0.9, 0.1, 0.0), (1.2, 0.3, 0.4))  # stands on the floor
 
 
-def params(**given):
+def params(**changes):
     settings = {"spacing": SPACING, "sound_speed": 40.0, "fluid": (WATER,), "boundary.walls": TANK}
-    return fluid_params(**(settings | {"boundary.obstacles": (BOX,)} | given))
+    return fluid_params(**(settings | {"boundary.obstacles": (BOX,)} | changes))
 
 
 @pytest.mark.parametrize("wall_offset", [0.5, 1.0, 1.5])
@@ -34,23 +34,23 @@ def test_outermost_particles_lie_the_wall_offset_inside_wet_faces(wall_offset):
 
 def test_a_box_against_a_wall_is_dry_there_unless_the_face_is_open():
     corner = ((1.2, 0.0, 0.0), (1.5, 0.4, 0.3))
-    shut = obstacle_points(params(boundary__obstacles=(corner,)))
-    assert shut.max(axis=0)[0] == pytest.approx(1.5 - 0.5 * SPACING)
-    assert shut.min(axis=0)[1] == pytest.approx(0.5 * SPACING)
-    outlet = obstacle_points(
+    closed_points = obstacle_points(params(boundary__obstacles=(corner,)))
+    assert closed_points.max(axis=0)[0] == pytest.approx(1.5 - 0.5 * SPACING)
+    assert closed_points.min(axis=0)[1] == pytest.approx(0.5 * SPACING)
+    outlet_points = obstacle_points(
         params(
             boundary__obstacles=(corner,),
             boundary__open_faces=("z+", "x+"),
             boundary__wall_offset=1.0,
         )
     )
-    assert outlet.max(axis=0)[0] == pytest.approx(1.5 - SPACING)
+    assert outlet_points.max(axis=0)[0] == pytest.approx(1.5 - SPACING)
 
 
 def test_closed_faces_of_the_tank_and_all_of_a_box_are_shown_as_walls():
-    shown = SphFluid(params(boundary__open_faces=("z+", "x+"))).walls()
-    assert shown["cells"].shape == (4 + 6, 4)
-    tank, box = shown["points"][:16], shown["points"][16:]
+    walls = SphFluid(params(boundary__open_faces=("z+", "x+"))).walls()
+    assert walls["cells"].shape == (4 + 6, 4)
+    tank, box = walls["points"][:16], walls["points"][16:]
     assert (tank.min(axis=0), tank.max(axis=0)) == (pytest.approx(TANK[0]), pytest.approx(TANK[1]))
     assert not (tank.reshape(4, 4, 3)[:, :, 0] == 1.5).all(axis=1).any()
     assert (box.min(axis=0), box.max(axis=0)) == (pytest.approx(BOX[0]), pytest.approx(BOX[1]))
@@ -70,8 +70,8 @@ def test_in_two_dimensions_they_have_one_row_along_y():
 
 
 def test_what_water_cannot_feel_is_left_out():
-    big = ((0.7, 0.1, 0.2), (1.4, 0.9, 0.9))
-    points = obstacle_points(params(boundary__walls=None, boundary__obstacles=(big,)))
+    block = ((0.7, 0.1, 0.2), (1.4, 0.9, 0.9))
+    points = obstacle_points(params(boundary__walls=None, boundary__obstacles=(block,)))
     middle = np.array([1.05, 0.5, 0.55])
     assert np.abs(points - middle).max(axis=1).min() > 0.1
     assert len(points) < 14 * 16 * 14
@@ -79,23 +79,23 @@ def test_what_water_cannot_feel_is_left_out():
 
 
 def test_plan_counts_the_particles_of_obstacles():
-    one = params()
+    parameters = params()
     assert MANIFEST.plan is not None
-    assert MANIFEST.plan(one).items == len(state(one).position_density)
-    assert len(state(one).position_density) == len(
+    assert MANIFEST.plan(parameters).items == len(state(parameters).position_density)
+    assert len(state(parameters).position_density) == len(
         state(params(boundary__obstacles=())).position_density
-    ) + len(obstacle_points(one))
+    ) + len(obstacle_points(parameters))
 
 
 def test_water_does_not_enter_an_obstacle():
-    near = ((0.7, 0.0, 0.0), (0.9, 0.4, 0.6))  # a dam across the whole tank
-    given = {
-        "boundary.obstacles": (near,),
+    dam = ((0.7, 0.0, 0.0), (0.9, 0.4, 0.6))  # a dam across the whole tank
+    changes = {
+        "boundary.obstacles": (dam,),
         "boundary.wall_viscosity_factor": 0.0,
         "boundary.wall_offset": 1.0,
         "viscosity.artificial": 0.1,
     }
-    fluid = SphFluid(params(**given))
+    fluid = SphFluid(params(**changes))
     time = 0.0
     while time < 0.5:
         dt = fluid.stable_dt()
@@ -116,5 +116,7 @@ def test_water_does_not_enter_an_obstacle():
 )
 def test_a_wrong_obstacle_is_refused_with_a_sentence(box, sentence):
     base = {"spacing": SPACING, "sound_speed": 40.0, "fluid": [WATER]}
-    found, mistakes = read(SphFluidParams, nested(base | {"boundary.obstacles": [box]}), "water")
-    assert found is None and sentence in "\n".join(mistakes), mistakes
+    parameters, mistakes = read(
+        SphFluidParams, nested(base | {"boundary.obstacles": [box]}), "water"
+    )
+    assert parameters is None and sentence in "\n".join(mistakes), mistakes

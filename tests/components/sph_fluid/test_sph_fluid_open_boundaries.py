@@ -1,4 +1,4 @@
-"""Inflow and outflow: what comes, what goes, and how it flows between."""
+"""Inflow and outflow: particles that enter and leave, and the flow between."""
 
 import re
 from typing import Any
@@ -70,26 +70,26 @@ def test_particles_of_buffers_are_no_part_of_the_fluid() -> None:
 @pytest.mark.parametrize("xsph", [0.0, pytest.param(0.2, marks=pytest.mark.full)])
 def test_threads_and_a_saved_state_change_no_bit(integration: str, xsph: float) -> None:
     changes = {"integration": integration, "xsph": xsph, "boundary.outflow": [{"face": "x+"}]}
-    fluid, other = tube(**changes), tube(**changes)
+    fluid, loaded = tube(**changes), tube(**changes)
     shared = SphFluid(fluid.params, Resources(2))
-    for each in (fluid, shared):
-        run(each, 0.3)
-    other.load(fluid.save())
-    for each in (fluid, shared, other):
-        run(each, 0.3)
+    for solver in (fluid, shared):
+        run(solver, 0.3)
+    loaded.load(fluid.save())
+    for solver in (fluid, shared, loaded):
+        run(solver, 0.3)
     assert fluid.state.passed.min() > 0
-    for each in (shared, other):
+    for solver in (shared, loaded):
         for name, array in fluid.save().items():
-            assert np.array_equal(each.save()[name], array), name
+            assert np.array_equal(solver.save()[name], array), name
 
 
 def test_a_run_begins_from_a_state_with_more_fluid() -> None:
     fluid = tube(**{"boundary.outflow": [], "boundary.open_faces": ["x-", "x+"]})
     run(fluid, 0.4)
-    other = tube(**{"boundary.outflow": [], "boundary.open_faces": ["x-", "x+"]})
-    assert fluid.items() > other.items()
-    other.begin_from(fluid.save())
-    assert other.items() == fluid.items()
+    restarted = tube(**{"boundary.outflow": [], "boundary.open_faces": ["x-", "x+"]})
+    assert fluid.items() > restarted.items()
+    restarted.begin_from(fluid.save())
+    assert restarted.items() == fluid.items()
 
 
 def test_an_inflow_may_have_a_profile_by_formula_or_table(tmp_path: Any) -> None:
@@ -98,10 +98,10 @@ def test_an_inflow_may_have_a_profile_by_formula_or_table(tmp_path: Any) -> None
     speeds = []
     for changes in ({"speed": "2 * z"}, {"table": str(table)}):
         fluid = tube(**{"boundary.inflow": [{"face": "x-", **changes}]})
-        held = fluid.state.role == 1
+        in_buffer = fluid.state.role == 1
         z, u = fluid.state.position_density[: fluid.state.fluid, 2], fluid.state.velocity_pressure
-        assert u[: fluid.state.fluid][held, 0] == pytest.approx(2.0 * z[held])
-        speeds.append(u[: fluid.state.fluid][held, 0])
+        assert u[: fluid.state.fluid][in_buffer, 0] == pytest.approx(2.0 * z[in_buffer])
+        speeds.append(u[: fluid.state.fluid][in_buffer, 0])
     assert speeds[0] == pytest.approx(speeds[1])
 
 
@@ -111,12 +111,14 @@ def test_flow_may_go_the_other_way() -> None:
         "boundary.outflow": [{"face": "x-"}],
         "initial.velocity": [-SPEED, "0", "0"],
     }
-    forth, back = tube(), tube(**changes)
-    for each in (forth, back):
-        run(each, 1.0)
-    there, here = balance(forth), balance(back)
-    assert list(there.values()) == pytest.approx(list(here.values()), abs=10)
-    assert outputs_of(back)["discharge_gauge.discharge"] == pytest.approx(-SPEED * 0.5, rel=0.01)
+    forward, backward = tube(), tube(**changes)
+    for solver in (forward, backward):
+        run(solver, 1.0)
+    forward_balance, backward_balance = balance(forward), balance(backward)
+    assert list(forward_balance.values()) == pytest.approx(list(backward_balance.values()), abs=10)
+    assert outputs_of(backward)["discharge_gauge.discharge"] == pytest.approx(
+        -SPEED * 0.5, rel=0.01
+    )
 
 
 def test_a_level_bears_the_water_at_both_ends() -> None:
@@ -145,14 +147,14 @@ def test_an_inflow_may_be_as_dense_as_water_at_rest() -> None:
     inflow = {"face": "x-", "speed": SPEED, "level": 0.5, "density": "hydrostatic"}
     fluid = tube(**{"gravity": [0.0, 0.0, -9.81], "sound_speed": 25.0, "boundary.inflow": [inflow]})
     run(fluid, 0.02)
-    held = np.flatnonzero(fluid.state.role == 1)
-    z, density = fluid.state.position_density[held, 2:].T
-    pressure = fluid.state.velocity_pressure[held, 3] * density**2
+    rows = np.flatnonzero(fluid.state.role == 1)
+    z, density = fluid.state.position_density[rows, 2:].T
+    pressure = fluid.state.velocity_pressure[rows, 3] * density**2
     assert pressure == pytest.approx(9810.0 * (0.5 - z), rel=1e-9)
 
 
 def test_an_outflow_keeps_its_pressure() -> None:
-    """Fluid that begins under it stays under it, up to the inflow.
+    """Fluid that starts at this pressure keeps it, up to the inflow.
 
     With Wendland's kernel; under pressure the cubic spline lets particles leave their rows.
     """

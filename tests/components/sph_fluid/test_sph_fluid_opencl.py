@@ -88,23 +88,23 @@ def test_gauges_and_totals_are_those_of_the_processor():
     params = params_of(MIRRORED)
     processor, device = advanced(SphFluid(params), 40), advanced(DeviceFluid(params, DEVICE), 40)
     keys = frozenset(f"{p.name}.{f.name}" for p in device.gives for f in p.fields)
-    wanted = frozenset(key for key in keys if key != "surface_load.force")
-    expected, found = processor.give(wanted), device.give(wanted)
-    assert found.keys() == expected.keys() == wanted and wanted
-    for key in wanted:
-        assert found[key] == pytest.approx(expected[key], rel=1e-9, abs=1e-9)
+    names = frozenset(name for name in keys if name != "surface_load.force")
+    expected, computed = processor.give(names), device.give(names)
+    assert computed.keys() == expected.keys() == names and names
+    for name in names:
+        assert computed[name] == pytest.approx(expected[name], rel=1e-9, abs=1e-9)
     assert device.totals().kinetic == pytest.approx(processor.totals().kinetic, rel=1e-9)
     assert device.totals().mass == processor.totals().mass
 
 
 def test_the_same_device_gives_the_same_bits_on_any_number_of_threads():
     params = params_of(DYNAMIC)
-    first, again = (
+    first, second = (
         advanced(DeviceFluid(params, Resources(threads, device="opencl:0")), 30).save()
         for threads in (1, 2)
     )
     for key, array in first.items():
-        assert np.array_equal(array, again[key], equal_nan=True), key
+        assert np.array_equal(array, second[key], equal_nan=True), key
 
 
 @pytest.mark.parametrize("changes", [{}, TWICE])
@@ -112,9 +112,9 @@ def test_a_snapshot_of_a_device_goes_on_there_with_the_same_bits(changes):
     params = params_of(MIRRORED | changes)
     device = advanced(DeviceFluid(params, DEVICE), 25)
     saved = device.save()
-    other = DeviceFluid(params, DEVICE)
-    other.load(saved)
-    first, second = advanced(device, 25).save(), advanced(other, 25).save()
+    loaded = DeviceFluid(params, DEVICE)
+    loaded.load(saved)
+    first, second = advanced(device, 25).save(), advanced(loaded, 25).save()
     for key, array in first.items():
         assert np.array_equal(array, second[key], equal_nan=True), key
 
@@ -127,9 +127,9 @@ def test_snapshots_go_on_elsewhere(changes):
     moved_out, moved_in = SphFluid(params), DeviceFluid(params, DEVICE)
     moved_out.load(device.save())
     moved_in.load(processor.save())
-    whole = advanced(processor, 25)
+    uninterrupted = advanced(processor, 25)
     for fluid in (moved_out, moved_in):
-        assert difference(whole, advanced(fluid, 25), "points") < 1e-13
+        assert difference(uninterrupted, advanced(fluid, 25), "points") < 1e-13
 
 
 def test_single_precision_rounds_pairs_alone():
@@ -162,9 +162,9 @@ REFUSED = {
 
 def test_inflows_are_refused_with_what_to_do():
     params = params_of(DYNAMIC | CHANNEL)
-    with pytest.raises(SceneError) as caught:
+    with pytest.raises(SceneError) as error:
         refuse_what_needs_the_processor(params, "opencl:0")
-    assert str(caught.value).startswith(
+    assert str(error.value).startswith(
         "on device opencl:0, boundary.inflow must be empty; found 1. Remove them, or set "
         'device = "cpu".'
     )
@@ -178,8 +178,8 @@ def test_parts_of_the_host_that_no_key_tells_of_are_refused(monkeypatch):
 
 def test_every_key_of_a_fluid_is_supported_or_limited():
     inner = {"boundary": Boundary, "viscosity": Viscosity}
-    keys = {each.name for each in fields(SphFluidParams)} - inner.keys()
-    keys |= {f"{name}.{each.name}" for name, table in inner.items() for each in fields(table)}
+    keys = {field.name for field in fields(SphFluidParams)} - inner.keys()
+    keys |= {f"{name}.{field.name}" for name, table in inner.items() for field in fields(table)}
     limited = limits(params_of(DYNAMIC)).keys()
     assert keys == SUPPORTED | limited and not SUPPORTED & limited
 

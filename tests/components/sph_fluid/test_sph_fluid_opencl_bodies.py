@@ -68,7 +68,7 @@ class Cube:
         return np.array(forces)
 
 
-def joined(fluid, cube):
+def join_cube(fluid, cube):
     fluid.bind(cube.static, JOINED)
     fluid.take(cube.fields())
     return fluid
@@ -98,7 +98,7 @@ def pair(changes, start=START, share=1.0, resources=DEVICE):
     params = around(start, **changes)
     fluids = SphFluid(params), DeviceFluid(params, resources)
     return tuple(
-        (joined(fluid, cube), cube)
+        (join_cube(fluid, cube), cube)
         for fluid, cube in ((fluid, Cube(share, start)) for fluid in fluids)
     )
 
@@ -142,9 +142,9 @@ def test_a_device_that_is_no_processor_pushes_bodies_too(monkeypatch):
 
 @pytest.mark.parametrize("changes", [MIRRORED, DYNAMIC])
 def test_bodies_gain_the_momentum_that_the_fluid_loses(changes):
-    still = {"boundary__walls": None, "gravity": [0.0, 0.0, 0.0]}
-    params, cube = around(**(changes | still)), Cube()
-    device = joined(DeviceFluid(params, DEVICE), cube)
+    no_weight = {"boundary__walls": None, "gravity": [0.0, 0.0, 0.0]}
+    params, cube = around(**(changes | no_weight)), Cube()
+    device = join_cube(DeviceFluid(params, DEVICE), cube)
     cube.push(device, 5)
     before, dt = device.totals().momentum, 4e-4
     impulse = dt * cube.push(device, 20, dt).sum(axis=(0, 1))
@@ -157,7 +157,7 @@ def test_bodies_are_pushed_with_the_same_bits_on_any_number_of_threads():
     params, results = around(**FILMS), []
     for threads in (1, 2):
         cube = Cube()
-        fluid = joined(DeviceFluid(params, Resources(threads, device="opencl:0")), cube)
+        fluid = join_cube(DeviceFluid(params, Resources(threads, device="opencl:0")), cube)
         cube.push(fluid, 30)
         results.append(fluid.save())
     for key, array in results[0].items():
@@ -167,44 +167,44 @@ def test_bodies_are_pushed_with_the_same_bits_on_any_number_of_threads():
 def test_snapshots_of_fluids_with_bodies_go_on_elsewhere():
     fluids = pair(FILMS, LOW)
     (processor, cube), (device, _) = fluids
-    for fluid, its_cube in fluids:
-        its_cube.push(fluid, 25)
+    for fluid, pushed_cube in fluids:
+        pushed_cube.push(fluid, 25)
     params = around(LOW, **FILMS)
-    others = {}
+    restarts = {}
     for name, restarted, source in (
         ("out", SphFluid(params), device),
         ("in", DeviceFluid(params, DEVICE), processor),
         ("on", DeviceFluid(params, DEVICE), device),
     ):
-        again = Cube(start=LOW)
-        others[name] = joined(restarted, again)
+        restarted_cube = Cube(start=LOW)
+        restarts[name] = join_cube(restarted, restarted_cube)
         restarted.load(source.save())
-        again.place = cube.place.copy()
-        again.push(restarted, 25)
-    for fluid, its_cube in fluids:
-        its_cube.push(fluid, 25)
-    require_close(processor, others["out"])
-    require_close(processor, others["in"])
-    first, second = device.save(), others["on"].save()
+        restarted_cube.place = cube.place.copy()
+        restarted_cube.push(restarted, 25)
+    for fluid, pushed_cube in fluids:
+        pushed_cube.push(fluid, 25)
+    require_close(processor, restarts["out"])
+    require_close(processor, restarts["in"])
+    first, second = device.save(), restarts["on"].save()
     for key, array in first.items():
         assert np.array_equal(array, second[key], equal_nan=True), key
 
 
 def test_fluid_inside_a_body_is_removed():
     params = params_of(remove_inside_bodies=True, **MIRRORED)
-    removed = []
+    forces = []
     for fluid in (SphFluid(params), DeviceFluid(params, DEVICE)):
         cube = Cube()
         fluid.bind(cube.static, JOINED)
         fluid.prime(cube.fields())
-        removed.append(cube.push(fluid, 10))
-    assert np.abs(removed[1] - removed[0]).max() < 1e-9 * np.abs(removed[0]).max()
+        forces.append(cube.push(fluid, 10))
+    assert np.abs(forces[1] - forces[0]).max() < 1e-9 * np.abs(forces[0]).max()
 
 
 def test_single_precision_rounds_forces_on_bodies():
     exact, cube = pair(MIRRORED)[0]
-    rounded, other = pair(MIRRORED | {"precision": "float32"})[1]
-    expected, computed = cube.push(exact, 20), other.push(rounded, 20)
+    rounded, rounded_cube = pair(MIRRORED | {"precision": "float32"})[1]
+    expected, computed = cube.push(exact, 20), rounded_cube.push(rounded, 20)
     assert 0.0 < np.abs(computed - expected).max() < 1e-3 * np.abs(expected).max()
 
 

@@ -33,9 +33,9 @@ def test_terms_that_scenes_add_act_as_on_the_processor(table):
 
 def test_a_damped_fluid_goes_on_from_a_snapshot_with_the_same_bits():
     params = params_of(TERMS[1])
-    device, other = DeviceFluid(params, DEVICE), DeviceFluid(params, DEVICE)
-    other.load(advanced(device, 20).save())
-    first, second = advanced(device, 20).save(), advanced(other, 20).save()
+    device, loaded = DeviceFluid(params, DEVICE), DeviceFluid(params, DEVICE)
+    loaded.load(advanced(device, 20).save())
+    first, second = advanced(device, 20).save(), advanced(loaded, 20).save()
     for key, array in first.items():
         assert np.array_equal(array, second[key], equal_nan=True), key
 
@@ -62,11 +62,11 @@ def test_tanks_move_as_on_the_processor(table):
     first, second = processor.save()["motion"], device.save()["motion"]
     assert first[1] != 0.0  # work of the motion
     assert second == pytest.approx(first, rel=1e-3 if "precision" in table else 1e-9)
-    other = DeviceFluid(params, DEVICE)
-    other.load(device.save())
-    whole, again = advanced(device, 10).save(), advanced(other, 10).save()
-    for key, array in whole.items():
-        assert np.array_equal(array, again[key], equal_nan=True), key
+    loaded = DeviceFluid(params, DEVICE)
+    loaded.load(device.save())
+    device_state, loaded_state = advanced(device, 10).save(), advanced(loaded, 10).save()
+    for key, array in device_state.items():
+        assert np.array_equal(array, loaded_state[key], equal_nan=True), key
 
 
 VISCOUS = {"viscosity": {"kinematic": 0.05}}
@@ -98,7 +98,7 @@ def test_pistons_and_damping_zones_act_as_on_the_processor(table):
     fluids = SphFluid(params), DeviceFluid(params, DEVICE), DeviceFluid(params, DEVICE)
     for fluid in fluids:
         fluid.bind({}, frozenset())
-    processor, device, other = fluids
+    processor, device, loaded = fluids
     advanced(processor, 60), advanced(device, 60)
     assert difference(processor, device, "points") < 1e-12
     assert device.walls_move
@@ -108,10 +108,10 @@ def test_pistons_and_damping_zones_act_as_on_the_processor(table):
     for key in {"pistons", "pistons_corrected", "damping"} & first.keys():
         assert np.any(first[key] != 0.0)
         assert second[key] == pytest.approx(first[key], rel=1e-8), key
-    other.load(second)
-    whole, again = advanced(device, 10).save(), advanced(other, 10).save()
-    for key, array in whole.items():
-        assert np.array_equal(array, again[key], equal_nan=True), key
+    loaded.load(second)
+    device_state, loaded_state = advanced(device, 10).save(), advanced(loaded, 10).save()
+    for key, array in device_state.items():
+        assert np.array_equal(array, loaded_state[key], equal_nan=True), key
 
 
 def test_a_fluid_that_a_zone_slows_goes_on_with_the_same_bits():

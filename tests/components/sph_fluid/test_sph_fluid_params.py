@@ -1,4 +1,4 @@
-"""What a scene may not say, and what is known of it before it starts."""
+"""Mistakes in scenes are refused, and the plan of a run is known before it starts."""
 
 import dataclasses
 import math
@@ -78,8 +78,8 @@ def test_good_parameters_have_no_mistakes() -> None:
     ],
 )
 def test_mistake_says_where_rule_value_and_cure(changes: dict[str, Any], sentence: str) -> None:
-    found = mistakes(**changes)
-    assert re.search(sentence, found, re.DOTALL), found
+    text = mistakes(**changes)
+    assert re.search(sentence, text, re.DOTALL), text
 
 
 def test_fluid_may_reach_out_of_an_open_face() -> None:
@@ -103,17 +103,20 @@ def test_benchmark_tank_has_142421_particles() -> None:
 
 def test_wall_goes_on_with_the_lattice_of_the_fluid() -> None:
     params = read(SphFluidParams, nested(GOOD), "water")[0]
-    made = state(params)
-    wall = made.position_density[made.fluid :, :3]
+    initial = state(params)
+    wall = initial.position_density[initial.fluid :, :3]
     assert wall.min(axis=0) == pytest.approx([-0.05, -0.05, -0.05])
     assert wall.max(axis=0) == pytest.approx([2.05, 1.05, 1.95])
-    assert made.position_density[: made.fluid, :3].min(axis=0) == pytest.approx([0.05] * 3)
+    assert initial.position_density[: initial.fluid, :3].min(axis=0) == pytest.approx([0.05] * 3)
 
 
 def test_pressure_at_the_start_is_hydrostatic() -> None:
     params = read(SphFluidParams, nested(GOOD), "water")[0]
-    made = state(params)
-    z, density = made.position_density[: made.fluid, 2], made.position_density[: made.fluid, 3]
+    initial = state(params)
+    z, density = (
+        initial.position_density[: initial.fluid, 2],
+        initial.position_density[: initial.fluid, 3],
+    )
     stiffness = 60.0**2 * 1000.0 / 7.0
     pressure = stiffness * ((density / 1000.0) ** 7 - 1.0)
     assert pressure == pytest.approx(9810.0 * (1.0 - z), rel=1e-9)
@@ -134,20 +137,20 @@ def tuples() -> dict[str, Any]:
 def test_water_under_water_starts_under_the_pressure_of_both() -> None:
     boxes = (((0.0, 0.0, 0.0), (0.4, 0.4, 0.2)), ((0.0, 0.0, 0.2), (0.2, 0.4, 0.4)))
     beside = ((0.4, 0.0, 0.0), (0.6, 0.4, 0.2))  # nothing stands on it
-    one = fluid_params(spacing=0.05, sound_speed=20.0, fluid=(*boxes, beside))
-    made = state(one)
-    z, density = made.position_density[:, 2], made.position_density[:, 3]
-    below = np.where(made.position_density[:, 0] < 0.4, 0.4, 0.2) - z
+    params = fluid_params(spacing=0.05, sound_speed=20.0, fluid=(*boxes, beside))
+    initial = state(params)
+    z, density = initial.position_density[:, 2], initial.position_density[:, 3]
+    depth = np.where(initial.position_density[:, 0] < 0.4, 0.4, 0.2) - z
     pressure = 400.0 * 1000.0 / 7.0 * ((density / 1000.0) ** 7 - 1.0)
-    np.testing.assert_allclose(pressure, 9810.0 * below, rtol=1e-6)
+    np.testing.assert_allclose(pressure, 9810.0 * depth, rtol=1e-6)
 
 
 def test_an_old_key_is_answered_with_the_new_one() -> None:
     for old, new in SphFluidParams.RENAMED.items():
         (sentence,) = read(SphFluidParams, nested(GOOD) | {old: 1}, "components.water")[1]
         assert sentence == f"components.water.{old} is now {new}. Rename it."
-        *heads, last = new.split(".")
-        at = SphFluidParams
-        for head in heads:
-            at = type(getattr(at, head))
-        assert last in {field.name for field in dataclasses.fields(at)}
+        *parents, key = new.split(".")
+        section = SphFluidParams
+        for parent in parents:
+            section = type(getattr(section, parent))
+        assert key in {field.name for field in dataclasses.fields(section)}

@@ -43,47 +43,47 @@ def params_of(table: dict[str, Any], **changes: Any) -> SphFluidParams:
 
 
 def run(fluid: SphFluid, end: float) -> None:
-    now = 0.0
-    while now < end - 1e-12:
-        dt = min(fluid.stable_dt(), end - now)
+    time = 0.0
+    while time < end - 1e-12:
+        dt = min(fluid.stable_dt(), end - time)
         fluid.step(dt)
-        now += dt
+        time += dt
 
 
-def moved(fluid: SphFluid, by: list[float]) -> SphFluid:
-    """The same fluid with all its particles elsewhere; its lists are made again."""
-    other = SphFluid(fluid.params)
+def shifted_fluid(fluid: SphFluid, displacement: list[float]) -> SphFluid:
+    """The same fluid with all its particles displaced [m], and new neighbour lists."""
+    shifted = SphFluid(fluid.params)
     state = {name: np.array(array) for name, array in fluid.save().items()}
-    state["position_density"][: fluid.state.fluid, :3] += by
+    state["position_density"][: fluid.state.fluid, :3] += displacement
     state["reference"] = np.zeros((0, 3))
-    other.load(state)
-    return other
+    shifted.load(state)
+    return shifted
 
 
 @pytest.mark.parametrize("table", [PLANE, ALL], ids=["plane", "space"])
 def test_a_fluid_that_repeats_along_all_axes_is_the_same_wherever_it_is(
     table: dict[str, Any],
 ) -> None:
-    """Uniform flow across the faces feels nothing, and a wave there is as one in the middle."""
+    """A wave at the faces moves as the same wave in the middle of the tank."""
     fluid = SphFluid(params_of(table))
     state = {name: np.array(array) for name, array in fluid.save().items()}
     x = state["position_density"][:, 0]
     state["position_density"][:, 3] *= 1.0 + 0.001 * np.sin(2.0 * np.pi * x)
     fluid.load(state)
-    half = moved(fluid, [0.5, 0.0, 0.0])
-    for each in (fluid, half):
-        run(each, 0.02)
-    view, other = fluid.view(), half.view()
+    shifted = shifted_fluid(fluid, [0.5, 0.0, 0.0])
+    for solver in (fluid, shifted):
+        run(solver, 0.02)
+    view, shifted_view = fluid.view(), shifted.view()
     assert np.abs(view["velocity"][:, 0]).max() > 1e-4
-    assert other["velocity"] == pytest.approx(view["velocity"], abs=1e-9)
-    assert other["density"] == pytest.approx(view["density"], rel=1e-9)
+    assert shifted_view["velocity"] == pytest.approx(view["velocity"], abs=1e-9)
+    assert shifted_view["density"] == pytest.approx(view["density"], rel=1e-9)
 
 
 def test_pairs_across_a_face_have_the_bits_of_pairs_inside() -> None:
     rates = []
     for shift in (0.0, 0.5):
-        two = [[[0.5 - SPACING, 0.0, 0.5], [0.5 + SPACING, 1.0, 0.5 + SPACING]]]
-        fluid = SphFluid(params_of(PLANE, fluid=two, **{"viscosity.kinematic": 0.1}))
+        pair = [[[0.5 - SPACING, 0.0, 0.5], [0.5 + SPACING, 1.0, 0.5 + SPACING]]]
+        fluid = SphFluid(params_of(PLANE, fluid=pair, **{"viscosity.kinematic": 0.1}))
         state = {name: np.array(array) for name, array in fluid.save().items()}
         state["position_density"][:, 3] += [1.0, 2.0]
         state["velocity_pressure"][:, :3] = [[0.25, 0.0, 0.125], [-0.25, 0.0, 0.0]]
@@ -152,7 +152,7 @@ def poiseuille(**changes: Any) -> SphFluid:
 def test_flow_between_plates_stays_as_it_is() -> None:
     """u = g z (H - z) / 2ν; its discharge g H³ / 12ν.
 
-    Of 20 particles across 1.8 % more flows, of 40 1.2 %: viscosity between pairs is a little low.
+    With 20 particles across, 1.8 % more flows; with 40, 1.2 %: pairs have too little viscosity.
     """
     fluid = poiseuille()
     run(fluid, 1.0)
@@ -163,7 +163,7 @@ def test_flow_between_plates_stays_as_it_is() -> None:
 
 
 def test_the_weight_of_what_goes_round_is_counted() -> None:
-    """What gravity gives, the walls take: steady flow has lost as much as it fell."""
+    """Walls take the work of gravity: steady flow loses the potential energy of its fall."""
     fluid = poiseuille()
     before = fluid.totals()
     run(fluid, 1.0)
@@ -175,20 +175,20 @@ def test_the_weight_of_what_goes_round_is_counted() -> None:
 
 @pytest.mark.parametrize("threads", [2])
 def test_threads_and_a_saved_state_change_no_bit(threads: int) -> None:
-    fluid, other = poiseuille(), poiseuille()
+    fluid, loaded = poiseuille(), poiseuille()
     shared = SphFluid(fluid.params, Resources(threads))
-    for each in (fluid, shared):
-        run(each, 0.05)
-    other.load(fluid.save())
-    for each in (fluid, shared, other):
-        run(each, 0.05)
-    for each in (shared, other):
+    for solver in (fluid, shared):
+        run(solver, 0.05)
+    loaded.load(fluid.save())
+    for solver in (fluid, shared, loaded):
+        run(solver, 0.05)
+    for solver in (shared, loaded):
         for name, array in fluid.save().items():
-            assert np.array_equal(each.save()[name], array), name
+            assert np.array_equal(solver.save()[name], array), name
 
 
 def test_gauges_near_a_face_see_what_is_behind_it() -> None:
-    """In still water all along a pressure gauge reads the same."""
+    """In still water, pressure gauges at one height read the same."""
     gauges = {"gauges.pressure_gauges": [[0.0, 0.5, 0.1], [0.25, 0.5, 0.1], [0.5, 0.5, 0.1]]}
     gauges |= {"gauges.level_gauges": [[0.0, 0.5], [0.25, 0.5]]}
     tank = {"gravity": [0.0, 0.0, -9.81], "sound_speed": 40.0, "initial.velocity": ["0", "0", "0"]}
@@ -202,7 +202,7 @@ def test_gauges_near_a_face_see_what_is_behind_it() -> None:
 
 
 def test_a_body_in_a_face_is_pushed_as_inside() -> None:
-    """Samples beyond a face act from where they are in the tank."""
+    """Samples beyond a face act from their places wrapped into the tank."""
     forces = []
     for shift in (0.0, 0.5, 2.0):
         fluid = SphFluid(params_of(ALL, **{"boundary.method": "dbc"}))
@@ -220,9 +220,9 @@ def test_a_body_in_a_face_is_pushed_as_inside() -> None:
         state["position_density"][hole, 3] *= 1.001
         place[:, 0] += shift
         fluid.load(state)
-        where = np.array([0.5 + shift + 0.3 * SPACING, 0.5, 0.5])
+        centre = np.array([0.5 + shift + 0.3 * SPACING, 0.5, 0.5])
         velocity = np.tile([1.0, 0.0, 0.0], (27, 1))
-        fluid.take({"surface.position": where + arm, "surface.velocity": velocity})
+        fluid.take({"surface.position": centre + arm, "surface.velocity": velocity})
         fluid.step(1e-5)
         forces.append(outputs_of(fluid)["surface_load.force"])
     assert np.abs(forces[0]).max() > 0.0

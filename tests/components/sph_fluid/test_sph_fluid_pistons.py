@@ -62,10 +62,15 @@ def test_a_part_that_is_told_to_stay_acts_as_one_that_stands(tables, part, metho
     for fluid in (still, with_piston):
         for _ in range(20):
             fluid.step(5e-4)
-    place = "position_density"
-    ours, others = (getattr(f.state, place)[: f.state.fluid] for f in (still, with_piston))
-    order, other = np.argsort(still.state.identity), np.argsort(with_piston.state.identity)
-    assert ours[order] == pytest.approx(others[other], abs=1e-9)
+    field = "position_density"
+    still_positions, piston_positions = (
+        getattr(f.state, field)[: f.state.fluid] for f in (still, with_piston)
+    )
+    still_order, piston_order = (
+        np.argsort(still.state.identity),
+        np.argsort(with_piston.state.identity),
+    )
+    assert still_positions[still_order] == pytest.approx(piston_positions[piston_order], abs=1e-9)
     assert with_piston.totals().work == 0.0
 
 
@@ -84,14 +89,14 @@ def test_a_piston_goes_where_its_table_says_and_pushes_the_fluid_before_it(table
 
 
 def test_the_work_of_a_slow_push_lifts_the_water():
-    """Beside what a tank at rest does by itself; mirrored walls keep energy within 6 %."""
+    """Energy relative to a tank at rest; mirrored walls keep energy within 6 %."""
     still, pushed = fluid_with(OBSTACLE), fluid_with(OBSTACLE, piston("obstacles.0", PUSH))
     energies = {}
     for fluid in (still, pushed):
         for _ in range(1000):
             fluid.step(5e-4)
-        sums = fluid.totals()
-        energies[fluid] = sums.kinetic + sums.potential + sums.internal
+        totals = fluid.totals()
+        energies[fluid] = totals.kinetic + totals.potential + totals.internal
     width, depth, weight = 0.34, 0.2, 9.81 * 1000.0
     lifted = 0.5 * weight * width * depth**2 * (width / (width - 0.04) - 1.0)
     work = pushed.totals().work
@@ -127,18 +132,18 @@ def test_a_piston_moves_as_samples_of_a_link_do_to_the_bit():
 
 
 def test_samples_of_links_stand_before_those_of_pistons():
-    both = SphFluid(fluid_params(**BASE | OBSTACLE | piston("obstacles.0", PUSH)))
+    fluid = SphFluid(fluid_params(**BASE | OBSTACLE | piston("obstacles.0", PUSH)))
     static = {"normal": np.zeros((2, 3)), "volume": np.full(2, SPACING**2), "body": np.zeros(2)}
-    both.bind({f"surface.{k}": v for k, v in static.items()}, frozenset({"surface"}))
+    fluid.bind({f"surface.{k}": v for k, v in static.items()}, frozenset({"surface"}))
     with pytest.raises(OrderError, match="must be placed first"):
-        both.step(5e-4)
+        fluid.step(5e-4)
     places = np.array([[0.2, 0.5, 0.3], [0.22, 0.5, 0.3]])
     fields = {"position": places, "velocity": np.zeros((2, 3)), "mirror": places}
-    both.take({f"surface.{k}": v for k, v in fields.items()})
-    both.step(5e-4)
-    assert len(outputs_of(both)["surface_load.force"]) == 2
-    assert both.state.position_density[both.samples.row[:2], :3] == pytest.approx(places)
-    assert piston_x(both)[2:].max() < 0.06
+    fluid.take({f"surface.{k}": v for k, v in fields.items()})
+    fluid.step(5e-4)
+    assert len(outputs_of(fluid)["surface_load.force"]) == 2
+    assert fluid.state.position_density[fluid.samples.row[:2], :3] == pytest.approx(places)
+    assert piston_x(fluid)[2:].max() < 0.06
 
 
 def test_a_flap_turns_about_its_axis():
@@ -148,15 +153,17 @@ def test_a_flap_turns_about_its_axis():
         "axis": [0.0, 1.0, 0.0],
         "point": [0.1, 0.5, 0.0],
     }
-    free = {"boundary.obstacles": [((0.02, 0.0, 0.1), (0.06, 1.0, 0.4))]}
-    fluid = fluid_with(free, piston("obstacles.0", flap), {"fluid": [((0.1, 0, 0), (0.4, 1, 0.2))]})
+    obstacle = {"boundary.obstacles": [((0.02, 0.0, 0.1), (0.06, 1.0, 0.4))]}
+    fluid = fluid_with(
+        obstacle, piston("obstacles.0", flap), {"fluid": [((0.1, 0, 0), (0.4, 1, 0.2))]}
+    )
     points = fluid.pistons.parts[0].points
     for _ in range(100):
         fluid.step(5e-4)
     angle = 0.3 * np.sin(2 * np.pi * 99.5 * 5e-4 / 0.8)
     x, z = points[:, 0] - 0.1, points[:, 2]
-    turned = 0.1 + np.cos(angle) * x + np.sin(angle) * z
-    assert np.sort(piston_x(fluid)) == pytest.approx(np.sort(turned), abs=1e-9)
+    expected = 0.1 + np.cos(angle) * x + np.sin(angle) * z
+    assert np.sort(piston_x(fluid)) == pytest.approx(np.sort(expected), abs=1e-9)
 
 
 @pytest.mark.parametrize("scheme", ["extrapolated", "symplectic"])
@@ -177,14 +184,14 @@ def test_a_saved_state_goes_on_with_the_same_bits(scheme):
 
 
 def test_a_body_on_the_floor_beside_a_piston_has_no_film_and_a_note_says_why():
-    pool = BASE | OBSTACLE | {"fluid": [((0.16, 0.0, 0.0), (0.4, 1.0, 0.2))]}
-    fluid = SphFluid(fluid_params(**pool, **piston("obstacles.0", STAY)))
+    settings = BASE | OBSTACLE | {"fluid": [((0.16, 0.0, 0.0), (0.4, 1.0, 0.2))]}
+    fluid = SphFluid(fluid_params(**settings, **piston("obstacles.0", STAY)))
     x, z = np.meshgrid([0.11, 0.13, 0.15], [0.01, 0.03, 0.05])
     places = np.stack([x.ravel(), np.full(9, 0.5), z.ravel()], axis=1)
-    none = np.zeros((9, 3))
-    static = {"normal": none, "volume": np.full(9, SPACING**2), "body": np.zeros(9)}
+    zeros = np.zeros((9, 3))
+    static = {"normal": zeros, "volume": np.full(9, SPACING**2), "body": np.zeros(9)}
     fluid.bind({f"surface.{k}": v for k, v in static.items()}, frozenset({"surface"}))
-    fluid.take({"surface.position": places, "surface.velocity": none, "surface.mirror": places})
+    fluid.take({"surface.position": places, "surface.velocity": zeros, "surface.mirror": places})
     fluid.step(2e-4)
     (note,) = [note for note in fluid.notes() if "touches a wall" in note]
     assert note.startswith("body 0 ")
@@ -195,8 +202,10 @@ def test_a_state_of_a_piston_on_its_way_is_no_start():
     first, second = (fluid_with(OBSTACLE, piston("obstacles.0", PUSH)) for _ in range(2))
     for _ in range(250):
         first.step(5e-4)
-    there = first.params.boundary.pistons[0].motion.trajectory.at(250 * 5e-4).place[0]
-    with pytest.raises(SceneError, match=f"within 0.02 spacings; found {there:.3g} m between"):
+    displacement = first.params.boundary.pistons[0].motion.trajectory.at(250 * 5e-4).place[0]
+    with pytest.raises(
+        SceneError, match=f"within 0.02 spacings; found {displacement:.3g} m between"
+    ):
         second.begin_from(first.save())
 
 
@@ -218,8 +227,8 @@ def test_a_state_without_the_piston_is_refused():
 
 
 def test_a_step_beyond_the_table_is_refused():
-    short = {"times": [0.0, 1e-3], "displacement": [[0, 0, 0], [1e-6, 0, 0]]}
-    fluid = fluid_with(OBSTACLE, piston("obstacles.0", short))
+    motion = {"times": [0.0, 1e-3], "displacement": [[0, 0, 0], [1e-6, 0, 0]]}
+    fluid = fluid_with(OBSTACLE, piston("obstacles.0", motion))
     fluid.step(1e-3)
     with pytest.raises(StepError, match=r"table of one ends at 0.001 s, and a step goes on to"):
         fluid.step(1e-3)
@@ -227,10 +236,10 @@ def test_a_step_beyond_the_table_is_refused():
 
 def test_what_stands_and_what_moves_is_all_there_is():
     params = fluid_params(**BASE | OBSTACLE | WALL | piston("walls.x+", STAY))
-    whole = fluid_params(**BASE | OBSTACLE | WALL)
+    fixed_params = fluid_params(**BASE | OBSTACLE | WALL)
     parts = [standing(params), moving(params, params.boundary.pistons[0])]
     points = np.concatenate([p for p, _ in parts])
-    assert sorted(map(tuple, points)) == sorted(map(tuple, standing(whole)[0]))
+    assert sorted(map(tuple, points)) == sorted(map(tuple, standing(fixed_params)[0]))
     assert {len(p) - len(images) for p, images in parts} == {0}
 
 
@@ -249,7 +258,7 @@ DEEP = {"dimensions": 3}
 
 
 @pytest.mark.parametrize(
-    ("part", "motion", "more", "match"),
+    ("part", "motion", "changes", "match"),
     [
         ("wall.x-", PUSH, {}, "part must be one of walls.x-, walls.x"),
         ("obstacles.00", PUSH, {}, "with a number N from 0 on; found obstacles.00"),
@@ -275,9 +284,9 @@ DEEP = {"dimensions": 3}
         ("obstacles.0", PUSH, DEEP | {"boundary.lubrication_films": True}, "films know no pistons"),
     ],
 )
-def test_a_piston_that_cannot_move_so_is_refused(part, motion, more, match):
+def test_a_piston_that_cannot_move_so_is_refused(part, motion, changes, match):
     with pytest.raises(ValidationError, match=match):
-        fluid_params(**BASE | OBSTACLE | piston(part, motion) | more)
+        fluid_params(**BASE | OBSTACLE | piston(part, motion) | changes)
 
 
 THROUGH = ((0.1, 0.2, -0.08), (0.3, 0.4, 0.2))  # through the floor
@@ -377,6 +386,6 @@ def test_a_mesh_is_refused_where_something_is_in_its_way(tmp_path, way, match):
 
 
 def test_a_part_that_is_moved_twice_is_refused():
-    twice = [{"part": "obstacles.0", "motion": PUSH}] * 2
+    pistons = [{"part": "obstacles.0", "motion": PUSH}] * 2
     with pytest.raises(ValidationError, match=r"found obstacles\.0 twice"):
-        fluid_params(**BASE | OBSTACLE, **{"boundary.pistons": twice})
+        fluid_params(**BASE | OBSTACLE, **{"boundary.pistons": pistons})

@@ -47,16 +47,16 @@ def outside(name: str, x: float, z: float) -> bool:
 
 def wet_cells(name: str) -> tuple:
     """Cells of water around the body in the middle of the tank, all in one slab of 1 m."""
-    found = []
+    cells = []
     for i in range(CELLS):
         for k in range(CELLS):
             if outside(name, *(cell + 0.5 - 0.5 * CELLS for cell in (i, k))):
                 low, high = ((i, 0.0, k), (i + 1, 1.0 / SPACING, k + 1))
-                found.append(tuple(tuple(SPACING * x for x in one) for one in (low, high)))
-    return tuple(found)
+                cells.append(tuple(tuple(SPACING * x for x in corner) for corner in (low, high)))
+    return tuple(cells)
 
 
-def sunk(name: str, **given: object) -> SphFluid:
+def sunken_body(name: str, **changes: object) -> SphFluid:
     """Water at rest around a body that is fixed in the middle of a tank."""
     body, _ = SHAPES[name]
     side = CELLS * SPACING
@@ -68,38 +68,38 @@ def sunk(name: str, **given: object) -> SphFluid:
         "boundary.walls": ((0.0, 0.0, 0.0), (side, 1.0, side + 0.09)),
         "boundary.method": "mdbc",
     }
-    fluid = SphFluid(fluid_params(**(settings | CALM | given)))
-    # Water below an overhang starts without the pressure of what is beside and above it.
+    fluid = SphFluid(fluid_params(**(settings | CALM | changes)))
+    # Water below an overhang starts without the pressure of the water beside and above it.
     state, rows = fluid.state, slice(fluid.state.fluid)
     depth = side - state.position_density[rows, 2]
     state.position_density[rows, 3] = 1000.0 + WEIGHT * depth / fluid.params.sound_speed**2
-    depth_asked = float(fluid.describe()["surface.depth"][0])
-    found = body(Sampling(SPACING, depth_asked, 0.5 * SPACING, planar=True))
-    arm, static = found.arm, {"surface.normal": found.normal, "surface.volume": found.volume}
+    sample_depth = float(fluid.describe()["surface.depth"][0])
+    samples = body(Sampling(SPACING, sample_depth, 0.5 * SPACING, planar=True))
+    arm, static = samples.arm, {"surface.normal": samples.normal, "surface.volume": samples.volume}
     fluid.bind(static | {"surface.body": np.zeros(len(arm))}, JOINED)
     middle = np.array([0.5 * side, 0.5, 0.5 * side])
-    placed = {"surface.position": arm + middle, "surface.velocity": np.zeros_like(arm)}
+    fields = {"surface.position": arm + middle, "surface.velocity": np.zeros_like(arm)}
     if fluid.params.mirrored:
-        placed["surface.mirror"] = found.image + middle
-    fluid.take(placed)
+        fields["surface.mirror"] = samples.image + middle
+    fluid.take(fields)
     return fluid
 
 
 def push(fluid: SphFluid, begin: float, end: float) -> np.ndarray:
     """Mean force on the body between two times [s]; (3,) N."""
-    time, spent, impulse = 0.0, 0.0, np.zeros(3)
+    time, duration, impulse = 0.0, 0.0, np.zeros(3)
     while time < end:
         dt = fluid.stable_dt()
         fluid.step(dt)
         time += dt
         if time > begin:
-            spent += dt
+            duration += dt
             impulse += dt * outputs_of(fluid)["surface_load.force"].sum(axis=0)
-    return impulse / spent
+    return impulse / duration
 
 
 @pytest.mark.parametrize(
-    ("name", "given", "end", "within"),
+    ("name", "changes", "end", "tolerance"),
     [
         ("square", {}, 0.5, 0.005),
         ("L", {}, 0.5, 0.02),
@@ -115,9 +115,9 @@ def push(fluid: SphFluid, begin: float, end: float) -> np.ndarray:
     ],
     ids=["square", "L", "U", "disc", "square held by the potential"],
 )
-def test_a_body_under_water_is_pushed_up_by_the_weight_of_its_area(name, given, end, within):
-    force = push(sunk(name, **given), 0.25, end) / (WEIGHT * SHAPES[name][1])
-    assert force[2] == pytest.approx(1.0, abs=within)
+def test_a_body_under_water_is_pushed_up_by_the_weight_of_its_area(name, changes, end, tolerance):
+    force = push(sunken_body(name, **changes), 0.25, end) / (WEIGHT * SHAPES[name][1])
+    assert force[2] == pytest.approx(1.0, abs=tolerance)
     assert abs(force[0]) < 1e-3 and force[1] == 0.0
 
 
@@ -170,7 +170,7 @@ def test_samples_are_in_the_plane_of_the_fluid_wherever_theirs_is():
         for _ in range(20):
             fluid.step(1e-4)
         ends.append(fluid.save())
-    assert all(np.array_equal(one, ends[1][name]) for name, one in ends[0].items())
+    assert all(np.array_equal(array, ends[1][name]) for name, array in ends[0].items())
 
 
 def test_a_fluid_says_that_it_has_two_dimensions():

@@ -27,8 +27,8 @@ def stretch(fluid: SphFluid) -> None:
 
 
 def energy(fluid: SphFluid) -> float:
-    now = fluid.totals()
-    return now.kinetic + now.internal
+    totals = fluid.totals()
+    return totals.kinetic + totals.internal
 
 
 def swing(fluid: SphFluid, steps: int) -> np.ndarray:
@@ -50,23 +50,23 @@ def test_order_in_time(drop: Make, integration: str, order: int) -> None:
 
 
 def test_without_viscosity_energy_stays(drop: Make) -> None:
-    lost = {}
+    losses = {}
     for integration in ("symplectic", "extrapolated"):
         fluid = drop(integration=integration, viscosity__artificial=0.0, **FREE)
         stretch(fluid)
         before = energy(fluid)
         for _ in range(400):
             fluid.step(fluid.stable_dt())
-        lost[integration] = abs(energy(fluid) / before - 1.0)
-    assert lost["symplectic"] < 2e-5
-    assert lost["symplectic"] < 0.02 * lost["extrapolated"]
+        losses[integration] = abs(energy(fluid) / before - 1.0)
+    assert losses["symplectic"] < 2e-5
+    assert losses["symplectic"] < 0.02 * losses["extrapolated"]
 
 
-@pytest.mark.parametrize("given", [{"xsph": 0.5}, {"viscosity.kinematic": 1e-3}])
+@pytest.mark.parametrize("changes", [{"xsph": 0.5}, {"viscosity.kinematic": 1e-3}])
 def test_one_step_gives_and_takes_the_same_impulse(
-    drop: Make, plate: Join, struck: Strike, given: dict[str, float]
+    drop: Make, plate: Join, struck: Strike, changes: dict[str, float]
 ) -> None:
-    fluid = drop(integration="symplectic", gravity=(0.0, 0.0, 0.0), **given)
+    fluid = drop(integration="symplectic", gravity=(0.0, 0.0, 0.0), **changes)
     impulse, gained = struck(fluid, plate(fluid))
     assert np.abs(impulse[:, 2]).sum() > 0.0
     assert impulse.sum(axis=0) == pytest.approx(-gained, abs=1e-12 * np.abs(impulse).sum())
@@ -89,11 +89,11 @@ def test_step_limit_is_where_rest_becomes_unstable(
     fluid = pool(integration="symplectic", courant=courant, boundary__method=boundary)
     weight = fluid.totals().mass * 9.81 * 0.1
     try:
-        left = 0.3
-        while left > 0.0:
+        remaining = 0.3
+        while remaining > 0.0:
             dt = fluid.stable_dt()
             fluid.step(dt)
-            left -= dt
+            remaining -= dt
     except QuintetError:
         assert not calm
     assert (fluid.totals().kinetic < 1e-3 * weight) is calm
@@ -101,18 +101,18 @@ def test_step_limit_is_where_rest_becomes_unstable(
 
 @pytest.mark.parametrize("damper", [0.0, 0.5])
 def test_a_saved_state_goes_on_with_the_same_bits(pool: Make, damper: float) -> None:
-    given = {
+    settings = {
         "integration": "symplectic",
         "boundary.method": "mdbc",
         "density_diffusion": 0.1,
         "acoustic_damper": damper,
     }
-    one, other = pool(**given), pool(**given)
+    first, second = pool(**settings), pool(**settings)
     for _ in range(20):
-        one.step(one.stable_dt())
-    other.load(one.save())
-    for fluid in (one, other):
+        first.step(first.stable_dt())
+    second.load(first.save())
+    for fluid in (first, second):
         for _ in range(20):
             fluid.step(fluid.stable_dt())
-    mine, its = one.save(), other.save()
-    assert all(np.array_equal(mine[name], its[name]) for name in mine)
+    first_state, second_state = first.save(), second.save()
+    assert all(np.array_equal(first_state[name], second_state[name]) for name in first_state)

@@ -13,7 +13,7 @@ from quintet.interfaces.errors import SceneError
 
 pytestmark = pytest.mark.mpi
 PROGRAM = Path(__file__).with_name("fluid_on_ranks.py")
-# Others, whose terms are compiled for them alone: test_sph_fluid_ranks_of_other_terms.py.
+# Cases with terms that are compiled for them alone: test_sph_fluid_ranks_of_other_terms.py.
 NAMES = ("dam", "body", "spilling", "rolling", "swaying", "pushed")
 STEPS = 120  # with lists made again, and rows that change their rank
 folder = from_the_start(PROGRAM, NAMES, STEPS)
@@ -21,7 +21,7 @@ resumed = from_states(PROGRAM, NAMES, 40)
 
 
 class Several:
-    """Stands for a communicator of two ranks, of which none is asked."""
+    """A communicator of two ranks; the tests never call it."""
 
     size, rank = 2, 0
 

@@ -10,18 +10,18 @@ ROWS = 203
 
 
 def in_pieces(kernel, length, written, *arguments):
-    """Call a kernel on pieces of its rows; return a copy of what is written, so changed."""
-    changed = written.copy()
+    """Call a kernel on pieces of its rows; return a changed copy of the written array."""
+    copy = written.copy()
     for first in range(0, ROWS, length):
         rows = first, min(first + length, ROWS)
-        kernel(*rows, *(changed if part is written else part for part in arguments))
-    return changed
+        kernel(*rows, *(copy if part is written else part for part in arguments))
+    return copy
 
 
 def check(kernel, written, *arguments):
-    whole = in_pieces(kernel, ROWS, written, *arguments)
+    expected = in_pieces(kernel, ROWS, written, *arguments)
     for length in (1, 2, 3, 5, 7, 11):
-        assert in_pieces(kernel, length, written, *arguments).tobytes() == whole.tobytes()
+        assert in_pieces(kernel, length, written, *arguments).tobytes() == expected.tobytes()
 
 
 def test_rows_have_the_same_bits_wherever_they_stand():

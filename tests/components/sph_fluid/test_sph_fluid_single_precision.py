@@ -1,4 +1,4 @@
-"""Pairs in single precision: how far from double, and at rest as well."""
+"""Pairs in single precision: their difference from double precision, also at rest."""
 
 import math
 from collections.abc import Callable
@@ -45,12 +45,14 @@ def test_a_dam_breaks_as_in_double_precision() -> None:
     dt = double.stable_dt()
     for fluid in (single, double):
         run(fluid, 1500, dt)
-    one, other = single.view()["points"], double.view()["points"]
-    assert other[:, 0].max() > 1.9 * DEPTH  # it has run almost to the far wall
-    assert np.abs(one - other).max() < 0.05 * SPACING
-    assert one.mean(axis=0) == pytest.approx(other.mean(axis=0), abs=1e-4 * SPACING)
-    mine, its = single.totals(), double.totals()
-    assert mine.kinetic == pytest.approx(its.kinetic, rel=1e-4)
+    single_points, double_points = single.view()["points"], double.view()["points"]
+    assert double_points[:, 0].max() > 1.9 * DEPTH  # it has run almost to the far wall
+    assert np.abs(single_points - double_points).max() < 0.05 * SPACING
+    assert single_points.mean(axis=0) == pytest.approx(
+        double_points.mean(axis=0), abs=1e-4 * SPACING
+    )
+    single_totals, double_totals = single.totals(), double.totals()
+    assert single_totals.kinetic == pytest.approx(double_totals.kinetic, rel=1e-4)
 
 
 def test_rounding_alone_parts_the_two_at_first() -> None:
@@ -58,8 +60,8 @@ def test_rounding_alone_parts_the_two_at_first() -> None:
     dt = double.stable_dt()
     for fluid in (single, double):
         run(fluid, 50, dt)
-    apart = single.view()["points"] - double.view()["points"]
-    assert 0.0 < np.abs(apart).max() < 1e-4 * SPACING
+    difference = single.view()["points"] - double.view()["points"]
+    assert 0.0 < np.abs(difference).max() < 1e-4 * SPACING
 
 
 def test_still_water_is_no_less_still() -> None:
@@ -87,17 +89,17 @@ def test_still_water_is_no_less_still() -> None:
 def test_samples_take_what_the_fluid_loses_to_rounding(
     drop: Make, plate: Join, struck: Strike, kernel: str, friction: str
 ) -> None:
-    given = {"kernel": kernel, "viscosity.form": friction, "viscosity.kinematic": 1e-3}
-    fluid = drop(gravity=(0.0, 0.0, 0.0), precision="float32", **given)
+    settings = {"kernel": kernel, "viscosity.form": friction, "viscosity.kinematic": 1e-3}
+    fluid = drop(gravity=(0.0, 0.0, 0.0), precision="float32", **settings)
     impulse, gained = struck(fluid, plate(fluid))
     assert impulse.sum(axis=0) == pytest.approx(-gained, abs=20 * ROUNDED * np.abs(impulse).sum())
 
 
 def test_a_copy_of_the_state_goes_on_with_the_same_bits(drop: Make) -> None:
-    one, other = (drop(precision="float32", xsph=0.5) for _ in range(2))
-    run(one, 20, 1e-4)
-    other.load(one.save())
-    for fluid in (one, other):
+    first, second = (drop(precision="float32", xsph=0.5) for _ in range(2))
+    run(first, 20, 1e-4)
+    second.load(first.save())
+    for fluid in (first, second):
         run(fluid, 20, 1e-4)
-    mine, its = one.save(), other.save()
-    assert all(np.array_equal(mine[name], its[name]) for name in mine)
+    first_state, second_state = first.save(), second.save()
+    assert all(np.array_equal(first_state[name], second_state[name]) for name in first_state)

@@ -1,4 +1,4 @@
-"""Rows of the first lattice moved against each other: where they are, and that they rest."""
+"""Staggered rows of the first lattice: their places, and that they stay at rest."""
 
 import math
 
@@ -15,10 +15,10 @@ def test_staggered_rows_are_lattice_rows_that_end_at_walls_as_others_do() -> Non
     box = ((0.0, 0.0, 0.0), (0.6, 0.1, 0.1))
     params = fluid_params(spacing=0.02, sound_speed=20.0, fluid=(box,), staggered=True)
     rows = build.box_points(box, params).reshape(5, 5, 30, 3)
-    first = rows[..., 0, 0].ravel()  # of each row; none has a wall
+    starts = rows[..., 0, 0].ravel()  # of each row; none has a wall
     assert np.diff(rows[..., 0], axis=2) == pytest.approx(0.02, abs=1e-12)
-    gaps = np.diff(np.sort(first))
-    assert gaps.min() > 1e-5 and gaps.max() < 0.005 and 0.0 < first.min() < first.max() < 0.02
+    gaps = np.diff(np.sort(starts))
+    assert gaps.min() > 1e-5 and gaps.max() < 0.005 and 0.0 < starts.min() < starts.max() < 0.02
     walled = fluid_params(
         spacing=0.02,
         sound_speed=20.0,
@@ -28,12 +28,12 @@ def test_staggered_rows_are_lattice_rows_that_end_at_walls_as_others_do() -> Non
     )
     rows = build.box_points(box, walled).reshape(5, 5, 30, 3)
     assert np.ptp(rows[..., 0, 0]) < 0.06 * 0.02
-    assert rows[..., -1, 0] == pytest.approx(first.reshape(5, 5) + 0.58, abs=1e-12)
+    assert rows[..., -1, 0] == pytest.approx(starts.reshape(5, 5) + 0.58, abs=1e-12)
 
 
 @pytest.mark.parametrize("smoothing", [1.5, 2.0])
 def test_staggered_water_stays_still(smoothing: float) -> None:
-    """As still as any is wanted to be: speeds within 1 % of √(gH), pressure within 2 % of ρgH."""
+    """Speeds stay within 1 % of √(gH), pressure within 2 % of ρgH."""
     fluid = SphFluid(
         fluid_params(
             spacing=0.02,
@@ -60,9 +60,9 @@ def test_staggered_water_stays_still(smoothing: float) -> None:
         fluid.step(dt)
         time += dt
         if time > 0.5:
-            read = outputs_of(fluid)
-            speeds.append(read["motion_gauge.speed"])
-            pressures.append(read["pressure_gauge.pressure"])
+            outputs = outputs_of(fluid)
+            speeds.append(outputs["motion_gauge.speed"])
+            pressures.append(outputs["pressure_gauge.pressure"])
     assert np.max(speeds) < 0.01 * math.sqrt(9.81 * 0.3)
-    found = np.mean(pressures, axis=0) / (9810.0 * 0.3)
-    assert found == pytest.approx([1.0, 0.5, 2.0 / 3.0], abs=0.02)
+    ratios = np.mean(pressures, axis=0) / (9810.0 * 0.3)
+    assert ratios == pytest.approx([1.0, 0.5, 2.0 / 3.0], abs=0.02)

@@ -47,13 +47,13 @@ def test_flow_passes_no_wall_and_rises_at_the_low_end():
 
 def test_fluid_starts_with_the_energy_of_the_wave():
     params = fluid_params(spacing=0.0125, sound_speed=25.0, fluid=(BOX,), wave=asdict(WAVE))
-    made = state(params)
-    kinetic = 0.5 * 1000.0 * 0.0125**3 * (made.velocity_pressure[:, :3] ** 2).sum()
+    initial = state(params)
+    kinetic = 0.5 * 1000.0 * 0.0125**3 * (initial.velocity_pressure[:, :3] ** 2).sum()
     assert kinetic == pytest.approx(0.25 * 1000.0 * 9.81 * 0.02**2 * 0.1, rel=0.01)  # ρgA²/4
 
 
 @pytest.mark.parametrize(
-    ("given", "sentence"),
+    ("changes", "sentence"),
     [
         ({"wave": {"amplitude": 0.02, "length": 0.7}}, "whole half waves; found 2.857 in 1 m"),
         ({"wave": {"amplitude": 0.0, "length": 1.0}}, "water.wave.amplitude should be greater"),
@@ -62,11 +62,11 @@ def test_fluid_starts_with_the_energy_of_the_wave():
         ({"wave": {"amplitude": 0.02, "lenght": 1.0}}, "Did you mean length?"),
     ],
 )
-def test_a_wrong_wave_is_refused_with_a_sentence(given, sentence):
+def test_a_wrong_wave_is_refused_with_a_sentence(changes, sentence):
     base = {"spacing": 0.1, "sound_speed": 30.0, "fluid": [BOX]}
     wave = {"wave": {"amplitude": 0.02, "length": 1.0}}
-    found, mistakes = read(SphFluidParams, nested(base | wave | given), "water")
-    assert found is None and sentence in "\n".join(mistakes), mistakes
+    params, mistakes = read(SphFluidParams, nested(base | wave | changes), "water")
+    assert params is None and sentence in "\n".join(mistakes), mistakes
 
 
 @pytest.mark.parametrize("dimensions", [2, 3])
@@ -78,9 +78,9 @@ def test_viscosity_on_approach_alone_is_half_of_monaghans(dimensions):
     points = lattice(24, spacing, dimensions)
     speed = np.zeros_like(points)
     speed[:, 0] = np.sin(k * points[:, 2] + 0.3)
-    found = rates(points, speed, np.full(len(points), 1000.0), fluid)[:, 0]
+    acceleration = rates(points, speed, np.full(len(points), 1000.0), fluid)[:, 0]
     inside = (np.abs(points) < 0.2).all(axis=1)
-    u, a = speed[inside, 0], found[inside]
+    u, a = speed[inside, 0], acceleration[inside]
     viscosity = -(a @ u) / (u @ u) / k**2  # from a = -νk²u
     expected = 0.1 * 40.0 * 1.5 * spacing / (4.0 * (dimensions + 2))
     assert viscosity == pytest.approx(expected, rel=0.08)

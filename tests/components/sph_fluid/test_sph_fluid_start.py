@@ -20,31 +20,31 @@ CUBE = ((0.0, 0.0, 0.0), (0.2, 0.2, 0.2))
 ROOM = {"spacing": SPACING, "sound_speed": 30.0, "gravity": (0.0, 0.0, 0.0)}
 
 
-def mistakes(folder=None, **given):
-    return "\n".join(read(SphFluidParams, nested(ROOM | given), "water", folder)[1])
+def mistakes(folder=None, **changes):
+    return "\n".join(read(SphFluidParams, nested(ROOM | changes), "water", folder)[1])
 
 
-def fluid(**given):
-    return SphFluid(fluid_params(**(ROOM | given)))
+def fluid(**changes):
+    return SphFluid(fluid_params(**(ROOM | changes)))
 
 
-def points(one):
-    return one.state.position_density[: one.state.fluid, :3]
+def points(solver):
+    return solver.state.position_density[: solver.state.fluid, :3]
 
 
 def test_velocity_and_density_are_fields_of_the_place():
-    one = fluid(
+    solver = fluid(
         fluid=(CUBE,),
         initial__velocity=("-2 * (y - 0.1)", "2 * (x - 0.1)", 0.25),
         initial__density="1000 + where(z < 0.1, 5, 0) * cos(pi * x / 0.2)**2",
     )
-    x, y, z = points(one).T
-    found = one.state.velocity_pressure[: one.state.fluid, :3]
-    np.testing.assert_allclose(found, np.stack([-2 * (y - 0.1), 2 * (x - 0.1), 0.25 + 0 * x], 1))
+    x, y, z = points(solver).T
+    velocity = solver.state.velocity_pressure[: solver.state.fluid, :3]
+    np.testing.assert_allclose(velocity, np.stack([-2 * (y - 0.1), 2 * (x - 0.1), 0.25 + 0 * x], 1))
     density = 1000.0 + np.where(z < 0.1, 5.0, 0.0) * np.cos(math.pi * x / 0.2) ** 2
-    np.testing.assert_allclose(one.state.position_density[: one.state.fluid, 3], density)
+    np.testing.assert_allclose(solver.state.position_density[: solver.state.fluid, 3], density)
     # A vortex about the middle, which also drifts: of a lattice, Σ m ω r².
-    assert one.totals().momentum == pytest.approx([0.0, 0.0, 2.0], abs=1e-12)
+    assert solver.totals().momentum == pytest.approx([0.0, 0.0, 2.0], abs=1e-12)
 
 
 @pytest.mark.parametrize(
@@ -59,8 +59,8 @@ def test_velocity_and_density_are_fields_of_the_place():
     ],
 )
 def test_expressions_have_the_value_of_mathematics(text, value):
-    found = values_at(text, np.array([[0.5, 0.75, 1.0]] * 2), "v")
-    assert found == pytest.approx([value, value])
+    values = values_at(text, np.array([[0.5, 0.75, 1.0]] * 2), "v")
+    assert values == pytest.approx([value, value])
 
 
 @pytest.mark.parametrize(
@@ -98,7 +98,7 @@ def test_what_is_no_expression_is_refused_and_never_run(text):
 
 
 @pytest.mark.parametrize(
-    ("given", "sentence"),
+    ("changes", "sentence"),
     [
         ({"initial.density": "1 / (x - x)"}, "density must be finite in all of the fluid"),
         ({"initial.velocity": [0, "log(-1 - x)", 0]}, "velocity must be finite"),
@@ -107,8 +107,8 @@ def test_what_is_no_expression_is_refused_and_never_run(text):
         ({"initial.table": "none.csv"}, "file none.csv must lie beside the scene"),
     ],
 )
-def test_fields_that_cannot_be_are_refused(given, sentence):
-    assert sentence in mistakes(fluid=(CUBE,), **given)
+def test_fields_that_cannot_be_are_refused(changes, sentence):
+    assert sentence in mistakes(fluid=(CUBE,), **changes)
 
 
 def write(path: Path, text: str) -> Path:
@@ -120,14 +120,14 @@ def test_a_table_is_linear_between_its_rows(tmp_path):
     rows = [f"{x},{z},{3 * x + z},{1000 + z}" for z in (0.2, 0.0) for x in (0.0, 0.2, 0.1)]
     folder = write(tmp_path, "x, z, u, density\n" + "\n".join(rows) + "\n")
     table = nested(ROOM | {"fluid": (CUBE,), "initial.table": "start.csv"})
-    params, wrong = read(SphFluidParams, table, "water", folder)
-    assert not wrong
-    one = SphFluid(params)
-    x, _, z = points(one).T
-    velocity = one.state.velocity_pressure[: one.state.fluid, :3]
+    params, errors = read(SphFluidParams, table, "water", folder)
+    assert not errors
+    solver = SphFluid(params)
+    x, _, z = points(solver).T
+    velocity = solver.state.velocity_pressure[: solver.state.fluid, :3]
     np.testing.assert_allclose(velocity[:, 0], 3.0 * x + z, atol=1e-12)
     assert not velocity[:, 1:].any()
-    np.testing.assert_allclose(one.state.position_density[: one.state.fluid, 3], 1000.0 + z)
+    np.testing.assert_allclose(solver.state.position_density[: solver.state.fluid, 3], 1000.0 + z)
 
 
 @pytest.mark.parametrize(
@@ -167,55 +167,55 @@ SHAPES = [
 
 @pytest.mark.parametrize(("shape", "volume"), SHAPES, ids=["sphere", "cylinder", "prism"])
 def test_a_shape_weighs_what_it_holds_and_stays_inside(shape, volume):
-    one = fluid(fluid=(shape,))
-    assert one.totals().mass == pytest.approx(1000.0 * volume, rel=1e-9)
+    solver = fluid(fluid=(shape,))
+    assert solver.totals().mass == pytest.approx(1000.0 * volume, rel=1e-9)
     # Nearly as many particles as volumes of a cube.
-    assert one.state.fluid == pytest.approx(volume / SPACING**3, rel=0.1)
-    low, high = np.array(one.params.shapes[0].bounds)
-    assert ((points(one) > low - 0.5 * SPACING) & (points(one) < high + 0.5 * SPACING)).all()
-    assert MANIFEST.plan is not None and MANIFEST.plan(one.params).items == one.items()
+    assert solver.state.fluid == pytest.approx(volume / SPACING**3, rel=0.1)
+    low, high = np.array(solver.params.shapes[0].bounds)
+    assert ((points(solver) > low - 0.5 * SPACING) & (points(solver) < high + 0.5 * SPACING)).all()
+    assert MANIFEST.plan is not None and MANIFEST.plan(solver.params).items == solver.items()
 
 
 def test_particles_of_a_sphere_lie_in_it():
-    away = np.linalg.norm(points(fluid(fluid=(SPHERE_SHAPE,))) - 0.1, axis=1)
-    assert away.max() < 0.5 * 0.17 + 0.5 * SPACING
-    assert np.sqrt((away**2).mean()) == pytest.approx(math.sqrt(0.6) * 0.085, rel=0.02)
+    distance = np.linalg.norm(points(fluid(fluid=(SPHERE_SHAPE,))) - 0.1, axis=1)
+    assert distance.max() < 0.5 * 0.17 + 0.5 * SPACING
+    assert np.sqrt((distance**2).mean()) == pytest.approx(math.sqrt(0.6) * 0.085, rel=0.02)
 
 
 def test_a_shape_in_a_slab_is_a_disc():
     disc = {"shape": "cylinder", "base": [0.3, 0.0, 0.5], "top": [0.3, 1.0, 0.5], "radius": 0.1}
     box = ((0.0, 0.0, 0.0), (0.6, 1.0, 0.2))
-    one = fluid(dimensions=2, fluid=(box, disc))
-    assert one.totals().mass == pytest.approx(1000.0 * (0.12 + math.pi * 0.01), rel=1e-9)
+    solver = fluid(dimensions=2, fluid=(box, disc))
+    assert solver.totals().mass == pytest.approx(1000.0 * (0.12 + math.pi * 0.01), rel=1e-9)
 
 
 def test_a_surface_from_a_file_is_filled(tmp_path):
     mesh = trimesh.creation.icosphere(subdivisions=3, radius=1.0)
     mesh.export(tmp_path / "ball.stl")
     ball = {"shape": "mesh", "file": "ball.stl", "scale": 0.1, "origin": [0.3, 0.2, 0.1]}
-    params, wrong = read(SphFluidParams, nested(ROOM | {"fluid": [ball]}), "water", tmp_path)
-    assert not wrong
-    one = SphFluid(params)
-    assert one.totals().mass == pytest.approx(1000.0 * 1e-3 * float(mesh.volume), rel=1e-6)
-    away = np.linalg.norm(points(one) - [0.3, 0.2, 0.1], axis=1)
-    assert away.max() < 0.1 + 0.5 * SPACING
-    assert one.totals().momentum == pytest.approx([0.0] * 3)
-    assert points(one).mean(axis=0) == pytest.approx([0.3, 0.2, 0.1], abs=0.1 * SPACING)
+    params, errors = read(SphFluidParams, nested(ROOM | {"fluid": [ball]}), "water", tmp_path)
+    assert not errors
+    solver = SphFluid(params)
+    assert solver.totals().mass == pytest.approx(1000.0 * 1e-3 * float(mesh.volume), rel=1e-6)
+    distance = np.linalg.norm(points(solver) - [0.3, 0.2, 0.1], axis=1)
+    assert distance.max() < 0.1 + 0.5 * SPACING
+    assert solver.totals().momentum == pytest.approx([0.0] * 3)
+    assert points(solver).mean(axis=0) == pytest.approx([0.3, 0.2, 0.1], abs=0.1 * SPACING)
 
 
 def test_a_column_starts_hydrostatic_and_a_drop_without_weight():
     column, drop = SHAPES[1][0], SPHERE_SHAPE | {"centre": [0.4, 0.0, 0.3], "hydrostatic": False}
-    one = fluid(fluid=(column, drop), gravity=(0.0, 0.0, -9.81))
-    place = points(one)
-    density = one.state.position_density[: one.state.fluid, 3]
-    falls = place[:, 0] > 0.2
-    assert (density[falls] == 1000.0).all()
-    pressure = 900.0 * 1000.0 / 7.0 * ((density[~falls] / 1000.0) ** 7 - 1.0)
-    np.testing.assert_allclose(pressure, 9810.0 * (0.2 - place[~falls, 2]), rtol=1e-6)
+    solver = fluid(fluid=(column, drop), gravity=(0.0, 0.0, -9.81))
+    place = points(solver)
+    density = solver.state.position_density[: solver.state.fluid, 3]
+    in_drop = place[:, 0] > 0.2
+    assert (density[in_drop] == 1000.0).all()
+    pressure = 900.0 * 1000.0 / 7.0 * ((density[~in_drop] / 1000.0) ** 7 - 1.0)
+    np.testing.assert_allclose(pressure, 9810.0 * (0.2 - place[~in_drop, 2]), rtol=1e-6)
 
 
 @pytest.mark.parametrize(
-    ("given", "sentence"),
+    ("changes", "sentence"),
     [
         (
             {"fluid": [{"shape": "sphere", "radius": 1.0}]},
@@ -239,11 +239,11 @@ def test_a_column_starts_hydrostatic_and_a_drop_without_weight():
         ({}, "fluid must have at least one box"),
     ],
 )
-def test_shapes_that_cannot_be_are_refused(given, sentence):
-    assert sentence in mistakes(**given)
+def test_shapes_that_cannot_be_are_refused(changes, sentence):
+    assert sentence in mistakes(**changes)
 
 
-def at_rest(shape, size, centre):
+def samples_at(shape, size, centre):
     arm, normal, volume = fill(shape, size, SPACING, 3.0 * SPACING)
     image = mirrors(shape, size, arm, normal)
     return centre + arm, centre + image, volume
@@ -263,10 +263,12 @@ def test_a_body_displaces_its_volume_wherever_the_lattice_lies(shape, shift):
     arm, _, volume = fill(shape, size, SPACING, math.inf)
     water = lattice(SPACING, 3)
     rows = displaced(water, centre + arm, volume, SPACING)
-    whole = math.pi / 6.0 if shape == SPHERE else 1.0
-    assert len(rows) == round(whole * 0.17**3 / SPACING**3)
-    away = water - centre
-    depth = 0.085 - (np.linalg.norm(away, axis=1) if shape == SPHERE else np.abs(away).max(axis=1))
+    fill_share = math.pi / 6.0 if shape == SPHERE else 1.0
+    assert len(rows) == round(fill_share * 0.17**3 / SPACING**3)
+    offset = water - centre
+    depth = 0.085 - (
+        np.linalg.norm(offset, axis=1) if shape == SPHERE else np.abs(offset).max(axis=1)
+    )
     assert depth[rows].min() > -0.5 * SPACING
     assert np.delete(depth, rows).max() < 0.5 * SPACING
 
@@ -280,19 +282,19 @@ def test_a_floating_body_displaces_what_is_below_the_surface():
 
 
 def test_fluid_inside_bodies_is_removed_and_its_mass_told():
-    one = fluid(fluid=(CUBE,), remove_inside_bodies=True, boundary__method="mdbc")
+    solver = fluid(fluid=(CUBE,), remove_inside_bodies=True, boundary__method="mdbc")
     size, centre = np.full(3, 0.08), np.array([0.1, 0.1, 0.1])
-    place, image, volume = at_rest(BOX, size, centre)
+    place, image, volume = samples_at(BOX, size, centre)
     static = {"surface.volume": volume, "surface.body": np.zeros(len(volume))}
-    one.bind({"surface.normal": place, **static}, frozenset({"surface"}))
+    solver.bind({"surface.normal": place, **static}, frozenset({"surface"}))
     fields = {"surface.position": place, "surface.velocity": 0.0 * place, "surface.mirror": image}
-    one.prime(fields)
-    assert one.notes() == (
+    solver.prime(fields)
+    assert solver.notes() == (
         "body 0 stood in the fluid: 64 particles inside it, 0.512 kg, were removed",
     )
-    assert one.totals().mass == pytest.approx(8.0 - 0.512)
-    assert np.abs(points(one) - 0.1).max(axis=1).min() > 0.04
+    assert solver.totals().mass == pytest.approx(8.0 - 0.512)
+    assert np.abs(points(solver) - 0.1).max(axis=1).min() > 0.04
     for _ in range(5):
-        one.take(fields)
-        one.step(one.stable_dt())
-    assert one.totals().mass == pytest.approx(8.0 - 0.512)
+        solver.take(fields)
+        solver.step(solver.stable_dt())
+    assert solver.totals().mass == pytest.approx(8.0 - 0.512)

@@ -1,4 +1,4 @@
-"""Saving and loading, and what is neither imported nor compiled."""
+"""Saving and loading; terms that are off are neither imported nor compiled."""
 
 import subprocess
 import sys
@@ -122,34 +122,34 @@ def test_saved_state_continues_with_the_same_bits_in_a_fresh_process(
     for _ in range(25):
         fluid.take(fields)
         fluid.step(fluid.stable_dt())
-    mine, other = fluid.save(), dict(np.load(file))
-    assert mine.keys() == other.keys()
-    assert all(np.array_equal(mine[name], other[name]) for name in mine)
+    same_process, fresh_process = fluid.save(), dict(np.load(file))
+    assert same_process.keys() == fresh_process.keys()
+    assert all(np.array_equal(same_process[name], fresh_process[name]) for name in same_process)
 
 
 def test_repeated_window_gives_the_same_bits(pool: Make) -> None:
     fluid = pool(xsph=0.5, shepard_every=5)
     for _ in range(12):
         fluid.step(fluid.stable_dt())
-    kept = fluid.save()
+    saved = fluid.save()
     ends = []
     for _ in range(2):
-        fluid.load(kept)
+        fluid.load(saved)
         for _ in range(12):
             fluid.step(fluid.stable_dt())
         ends.append(fluid.save())
-    assert all(np.array_equal(ends[0][name], ends[1][name]) for name in kept)
+    assert all(np.array_equal(ends[0][name], ends[1][name]) for name in saved)
 
 
 def test_what_goes_out_is_a_copy(drop: Make, plate: Join) -> None:
     fluid = drop()
     fluid.take(plate(fluid))
     fluid.step(1e-4)
-    kept = {name: array.copy() for name, array in fluid.save().items()}
+    saved = {name: array.copy() for name, array in fluid.save().items()}
     for fields in (outputs_of(fluid), fluid.view(), fluid.save()):
         for array in fields.values():
             array[...] = 7
-    assert all(np.array_equal(kept[name], array) for name, array in fluid.save().items())
+    assert all(np.array_equal(saved[name], array) for name, array in fluid.save().items())
 
 
 def test_samples_keep_the_order_of_their_port(drop: Make, plate: Join) -> None:

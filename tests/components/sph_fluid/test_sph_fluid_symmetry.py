@@ -26,7 +26,7 @@ EVERY = CALM | {"viscosity.kinematic": 1e-4, "xsph": 0.3, "shepard_every": 10}
 JOINED = frozenset({"surface", "surface_load"})
 
 
-def params(**given: Any) -> SphFluidParams:
+def params(**changes: Any) -> SphFluidParams:
     """Half a column of water between a plane of symmetry and a dry floor, in two dimensions."""
     settings = {
         "spacing": SPACING,
@@ -36,45 +36,48 @@ def params(**given: Any) -> SphFluidParams:
         "boundary.walls": ((0.0, 0.0, 0.0), (0.6, 0.1, 0.4)),
         "boundary.symmetry": ("x-",),
     }
-    return fluid_params(**(settings | CALM | given))
+    return fluid_params(**(settings | CALM | changes))
 
 
-def whole(half: SphFluidParams) -> SphFluidParams:
+def whole_params(half: SphFluidParams) -> SphFluidParams:
     """The same water and tank on both sides of all planes of symmetry through the origin."""
     edge = half.boundary
     axes = ["xyz".index(face[0]) for face in edge.symmetry]
     assert edge.walls is not None
 
-    def both(box: Any) -> Any:
+    def extend(box: Any) -> Any:
         low, high = box.bounds
         x, y, z = (-high[axis] if axis in axes else low[axis] for axis in range(3))
         return replace(box, lowest=(x, y, z))
 
     return replace(
         half,
-        fluid=tuple(map(both, half.fluid)),
+        fluid=tuple(map(extend, half.fluid)),
         boundary=replace(
-            edge, obstacles=tuple(map(both, edge.obstacles)), walls=both(edge.walls), symmetry=()
+            edge,
+            obstacles=tuple(map(extend, edge.obstacles)),
+            walls=extend(edge.walls),
+            symmetry=(),
         ),
     )
 
 
-def side_by_side(one: SphFluid, other: SphFluid, end: float) -> float:
-    """Advance both to a time [s]; return the largest difference of place [m], of `one`'s fluid."""
+def side_by_side(half_fluid: SphFluid, whole_fluid: SphFluid, end: float) -> float:
+    """Advance both to a time [s]; return the largest difference of particles' places [m]."""
     time = 0.0
     while time < end:
-        dt = min(one.stable_dt(), other.stable_dt())
-        one.step(dt)
-        other.step(dt)
+        dt = min(half_fluid.stable_dt(), whole_fluid.stable_dt())
+        half_fluid.step(dt)
+        whole_fluid.step(dt)
         time += dt
-    mine, theirs = one.view()["points"], other.view()["points"]
-    apart = np.abs(mine[:, np.newaxis] - theirs).max(axis=2)
-    assert len(set(apart.argmin(axis=1))) == len(mine)
-    return float(apart.min(axis=1).max())
+    half_points, whole_points = half_fluid.view()["points"], whole_fluid.view()["points"]
+    distance = np.abs(half_points[:, np.newaxis] - whole_points).max(axis=2)
+    assert len(set(distance.argmin(axis=1))) == len(half_points)
+    return float(distance.min(axis=1).max())
 
 
 @pytest.mark.parametrize(
-    "given",
+    "changes",
     [
         {},
         {"integration": "symplectic"},
@@ -84,24 +87,24 @@ def side_by_side(one: SphFluid, other: SphFluid, end: float) -> float:
     ],
     ids=["mirrored", "symplectic", "dynamic", "potential", "every term"],
 )
-def test_half_a_column_falls_as_the_whole_does(given: dict[str, Any]) -> None:
-    half = params(**given)
-    one = SphFluid(half)
-    start = one.view()["points"]
+def test_half_a_column_falls_as_the_whole_does(changes: dict[str, Any]) -> None:
+    half = params(**changes)
+    half_fluid = SphFluid(half)
+    start = half_fluid.view()["points"]
     # Over 0.7 √(H/g) the water moves by a spacing; rounding alone may part the two.
-    assert side_by_side(one, SphFluid(whole(half)), 0.1) < 1e-12
-    assert np.abs(one.view()["points"] - start).max() > SPACING
+    assert side_by_side(half_fluid, SphFluid(whole_params(half)), 0.1) < 1e-12
+    assert np.abs(half_fluid.view()["points"] - start).max() > SPACING
 
 
 def test_gauges_on_the_plane_read_what_they_do_in_the_whole() -> None:
     points, spots = ((0.0, 0.0, 0.05), (0.01, 0.0, 0.1)), ((0.0, 0.0), (0.01, 0.0), (0.09, 0.0))
     half = params(gauges__pressure_gauges=points, gauges__level_gauges=spots)
-    one, other = SphFluid(half), SphFluid(whole(half))
-    side_by_side(one, other, 0.02)
-    mine, theirs = outputs_of(one), outputs_of(other)
+    half_fluid, whole_fluid = SphFluid(half), SphFluid(whole_params(half))
+    side_by_side(half_fluid, whole_fluid, 0.02)
+    half_outputs, whole_outputs = outputs_of(half_fluid), outputs_of(whole_fluid)
     for name, least in (("pressure_gauge.pressure", 100.0), ("level_gauge.height", 0.5 * DEPTH)):
-        assert np.abs(theirs[name]).min() > least
-        np.testing.assert_allclose(mine[name], theirs[name], rtol=1e-9)
+        assert np.abs(whole_outputs[name]).min() > least
+        np.testing.assert_allclose(half_outputs[name], whole_outputs[name], rtol=1e-9)
 
 
 @pytest.mark.parametrize("dimensions", [2, 3])
@@ -114,17 +117,23 @@ def test_water_presses_on_half_a_box_as_on_the_whole(dimensions: int) -> None:
         boundary__walls=((0.0, 0.0, 0.0), (0.2, 0.1, 0.3)),
         gauges__pressure_gauges=((0.0, 0.05, 0.06), (0.03, 0.05, 0.06), (0.06, 0.05, 0.03)),
     )
-    one, other = SphFluid(half), SphFluid(whole(half))
-    mine, theirs = (fluid.state.position_density[fluid.state.fluid :, :3] for fluid in (one, other))
-    theirs = theirs[theirs[:, 0] > 0.0]
-    order, same = (np.lexsort(points.round(6).T) for points in (mine, theirs))
-    np.testing.assert_allclose(mine[order], theirs[same], atol=1e-12)
-    assert side_by_side(one, other, 0.1) < 1e-11
-    x, _, z = one.view()["points"].T
+    half_fluid, whole_fluid = SphFluid(half), SphFluid(whole_params(half))
+    half_values, whole_values = (
+        fluid.state.position_density[fluid.state.fluid :, :3] for fluid in (half_fluid, whole_fluid)
+    )
+    whole_values = whole_values[whole_values[:, 0] > 0.0]
+    half_order, whole_order = (
+        np.lexsort(points.round(6).T) for points in (half_values, whole_values)
+    )
+    np.testing.assert_allclose(half_values[half_order], whole_values[whole_order], atol=1e-12)
+    assert side_by_side(half_fluid, whole_fluid, 0.1) < 1e-11
+    x, _, z = half_fluid.view()["points"].T
     assert ((x > 0.06) & (z < 0.05)).any()  # some water is beside the box
-    mine, theirs = (outputs_of(fluid)["pressure_gauge.pressure"] for fluid in (one, other))
-    assert theirs.min() > 100.0
-    np.testing.assert_allclose(mine, theirs, rtol=1e-9)
+    half_values, whole_values = (
+        outputs_of(fluid)["pressure_gauge.pressure"] for fluid in (half_fluid, whole_fluid)
+    )
+    assert whole_values.min() > 100.0
+    np.testing.assert_allclose(half_values, whole_values, rtol=1e-9)
 
 
 def test_a_quarter_falls_as_the_whole_does_in_three_dimensions() -> None:
@@ -135,7 +144,7 @@ def test_a_quarter_falls_as_the_whole_does_in_three_dimensions() -> None:
         boundary__walls=((0.0, 0.0, 0.0), (0.16, 0.08, 0.2)),
     )
     # The wall at y = 0.08 m is a wall of both.
-    assert side_by_side(SphFluid(quarter), SphFluid(whole(quarter)), 0.03) < 1e-12
+    assert side_by_side(SphFluid(quarter), SphFluid(whole_params(quarter)), 0.03) < 1e-12
 
 
 def test_still_water_is_hydrostatic_beside_the_plane() -> None:
@@ -186,14 +195,14 @@ def test_fluid_that_passes_the_plane_changes_places_with_its_image() -> None:
     row = int(np.argmin(position[: state.fluid, 0]))
     position[row, 0], velocity[row, 0], acceleration[row, 0] = -1e-3, -2.0, -3.0
     planes.write_images(state)
-    before = seen(position, velocity)
+    before = sorted_rows(position, velocity)
     planes.reflect_crossed(state)
     assert (position[row, 0], velocity[row, 0], acceleration[row, 0]) == (1e-3, 2.0, 3.0)
     planes.write_images(state)
-    np.testing.assert_array_equal(seen(position, velocity), before)
+    np.testing.assert_array_equal(sorted_rows(position, velocity), before)
 
 
-def seen(place: NDArray[Any], motion: NDArray[Any]) -> NDArray[Any]:
+def sorted_rows(place: NDArray[Any], motion: NDArray[Any]) -> NDArray[Any]:
     rows = np.concatenate([place, motion], axis=1)
     return np.asarray(rows[np.lexsort(rows.T)])
 
@@ -207,7 +216,7 @@ def test_water_thrown_at_the_plane_stays_before_it() -> None:
     assert fluid.totals().momentum[0] > 0.0
 
 
-def cut(half: bool) -> SphFluid:
+def water_over_plate(half: bool) -> SphFluid:
     """A cube of water, or the half of it with x > 0, over a moving plate."""
     edge, low = 6 * SPACING, 0.0 if half else -3 * SPACING
     fluid = SphFluid(
@@ -225,17 +234,17 @@ def cut(half: bool) -> SphFluid:
     line = SPACING * (np.arange(8) - 3.5)
     x, y = np.meshgrid(line[line > 0.0] if half else line, line + 3 * SPACING)
     points = np.stack([x.ravel(), y.ravel(), np.full(x.size, -0.5 * SPACING)], axis=1)
-    # Samples of fewer kilograms than particles: those of images are as light.
+    # Samples are lighter than particles; their images have the same mass.
     volume = np.full(len(points), 0.8 * SPACING**3)
     normal = np.tile([0.0, 0.0, 1.0], (len(points), 1))
     fluid.bind(
         {"surface.normal": normal, "surface.volume": volume, "surface.body": 0.0 * volume}, JOINED
     )
-    fluid.take(moving(points))
+    fluid.take(plate_fields(points))
     return fluid
 
 
-def moving(points: NDArray[Any]) -> Fields:
+def plate_fields(points: NDArray[Any]) -> Fields:
     return {
         "surface.position": points,
         "surface.velocity": np.tile([0.0, 0.0, 0.3], (len(points), 1)),
@@ -243,39 +252,39 @@ def moving(points: NDArray[Any]) -> Fields:
 
 
 def test_half_a_body_feels_what_that_half_of_the_whole_does() -> None:
-    one, other = cut(True), cut(False)
+    half_fluid, whole_fluid = water_over_plate(True), water_over_plate(False)
     for _ in range(10):
-        one.step(2e-4)
-        other.step(2e-4)
-    rows = other.state.position_density[other.samples.row, 0] > 0.0
-    mine, theirs = (
-        outputs_of(one)["surface_load.force"],
-        outputs_of(other)["surface_load.force"][rows],
+        half_fluid.step(2e-4)
+        whole_fluid.step(2e-4)
+    rows = whole_fluid.state.position_density[whole_fluid.samples.row, 0] > 0.0
+    half_force, whole_force = (
+        outputs_of(half_fluid)["surface_load.force"],
+        outputs_of(whole_fluid)["surface_load.force"][rows],
     )
-    assert np.abs(theirs).max() > 0.01
-    np.testing.assert_allclose(mine, theirs, atol=1e-10)
+    assert np.abs(whole_force).max() > 0.01
+    np.testing.assert_allclose(half_force, whole_force, atol=1e-10)
 
 
 def test_samples_behind_the_plane_are_refused() -> None:
-    fluid = cut(True)
+    fluid = water_over_plate(True)
     points = fluid.state.position_density[fluid.samples.row, :3] - np.array([0.012, 0.0, 0.0])
     sentence = r"before the plane of symmetry x-, x = 0 m; sample 0 is at x = -0.002 m. Move"
     with pytest.raises(StepError, match=sentence):
-        fluid.take(moving(points))
+        fluid.take(plate_fields(points))
 
 
-@pytest.mark.parametrize("given", [EVERY, {"integration": "symplectic"}])
-def test_saved_state_and_threads_change_no_bit(given: dict[str, Any]) -> None:
+@pytest.mark.parametrize("changes", [EVERY, {"integration": "symplectic"}])
+def test_saved_state_and_threads_change_no_bit(changes: dict[str, Any]) -> None:
     ends = []
     for threads in (1, 3):
-        fluid = SphFluid(params(**given))
+        fluid = SphFluid(params(**changes))
         fluid.team = Team(threads, fewest=5)
         for _ in range(30):
             fluid.step(fluid.stable_dt())
-        kept = fluid.save()
+        saved = fluid.save()
         if threads == 3:
-            fluid = SphFluid(params(**given))
-            fluid.load(kept)
+            fluid = SphFluid(params(**changes))
+            fluid.load(saved)
         for _ in range(30):
             fluid.step(fluid.stable_dt())
         ends.append(fluid.save())
@@ -296,7 +305,7 @@ def test_only_a_scene_that_asks_imports_them() -> None:
 
 
 @pytest.mark.parametrize(
-    ("given", "sentence"),
+    ("changes", "sentence"),
     [
         ({"boundary.symmetry": ("z-",)}, "symmetry"),
         (
@@ -324,6 +333,6 @@ def test_only_a_scene_that_asks_imports_them() -> None:
         ),
     ],
 )
-def test_mistakes_are_told(given: dict[str, Any], sentence: str) -> None:
+def test_mistakes_are_told(changes: dict[str, Any], sentence: str) -> None:
     with pytest.raises(ValueError, match=sentence):
-        params(**given)
+        params(**changes)

@@ -11,9 +11,9 @@ from quintet.components.sph_fluid.component import SphFluid
 BOX = ((0.0, 0.0, 0.0), (0.6, 0.6, 0.6))
 
 
-def drop(**given):
+def drop(**changes):
     settings = {"spacing": 0.05, "sound_speed": 60.0, "fluid": (BOX,), "viscosity.artificial": 0.0}
-    return SphFluid(fluid_params(**(settings | {"gravity": (0.0, 0.0, 0.0)} | given)))
+    return SphFluid(fluid_params(**(settings | {"gravity": (0.0, 0.0, 0.0)} | changes)))
 
 
 def rates(fluid):
@@ -34,13 +34,13 @@ def test_diffusion_makes_no_mass_and_levels_density():
 
 
 def test_diffusion_leaves_water_under_its_own_weight_alone():
-    weighty = {"gravity": (0.0, 0.0, -9.81), "sound_speed": 48.6}
-    with_it = rates(drop(density_diffusion=0.1, **weighty))[:, 3]
-    assert np.abs(rates(drop(**weighty))[:, 3]).max() == 0.0
-    # Fourtakas' term alone knows the weight: what is left is its expansion in p/B.
-    level = drop(density_diffusion=0.1, **weighty)
-    level.state.position_density[:, 3] = 1000.0
-    assert np.abs(with_it).max() < 0.05 * np.abs(rates(level)[:, 3]).max()
+    settings = {"gravity": (0.0, 0.0, -9.81), "sound_speed": 48.6}
+    rate = rates(drop(density_diffusion=0.1, **settings))[:, 3]
+    assert np.abs(rates(drop(**settings))[:, 3]).max() == 0.0
+    # Fourtakas' term alone accounts for the weight; the rest is its expansion in p/B.
+    uniform = drop(density_diffusion=0.1, **settings)
+    uniform.state.position_density[:, 3] = 1000.0
+    assert np.abs(rate).max() < 0.05 * np.abs(rates(uniform)[:, 3]).max()
 
 
 def test_kinematic_viscosity_has_the_value_asked_for():
@@ -49,17 +49,17 @@ def test_kinematic_viscosity_has_the_value_asked_for():
     wave = 2.0 * math.pi / 0.6
     state = fluid.state
     state.velocity_pressure[:, 0] = np.sin(wave * state.position_density[:, 2])
-    found = rates(fluid)
+    rate = rates(fluid)
     place = state.position_density[: state.fluid]
     inside = ((place[:, [0, 2]] > 0.1) & (place[:, [0, 2]] < 0.5)).all(axis=1)
     expected = -0.01 * wave**2 * np.sin(wave * place[inside, 2])
-    error = np.abs(found[inside, 0] - expected).max() / np.abs(expected).max()
+    error = np.abs(rate[inside, 0] - expected).max() / np.abs(expected).max()
     assert error < 0.02
 
 
 def test_viscous_step_limit_is_stated():
-    thick = drop(viscosity__kinematic=10.0)
-    assert thick.stable_dt() == pytest.approx(0.125 * thick.constants.smoothing.length**2 / 10.0)
+    fluid = drop(viscosity__kinematic=10.0)
+    assert fluid.stable_dt() == pytest.approx(0.125 * fluid.constants.smoothing.length**2 / 10.0)
 
 
 def test_viscosity_and_diffusion_keep_momentum():

@@ -1,4 +1,4 @@
-"""Places over time: splines through tables, harmonic motions, and what is refused of them."""
+"""Places over time: splines through tables, harmonic motions, and inputs that are refused."""
 
 import math
 
@@ -87,12 +87,12 @@ def test_a_course_of_a_harmonic_motion_reaches_its_amplitudes():
 
 @pytest.mark.parametrize("ramp", [0.0, 0.7])
 def test_rates_of_a_harmonic_motion_are_those_of_its_place(ramp):
-    motion, little = Harmonic(np.array([0.1, 0.0, -0.2, 0.3]), 0.9, ramp), 1e-5
+    motion, dt = Harmonic(np.array([0.1, 0.0, -0.2, 0.3]), 0.9, ramp), 1e-5
     for time in (0.05, 0.3, 0.69, 0.71, 2.0):
-        ends = motion.at(time - little), motion.at(time + little)
-        here = motion.at(time)
-        assert (ends[1].place - ends[0].place) / (2 * little) == pytest.approx(here.rate, rel=1e-6)
-        assert (ends[1].rate - ends[0].rate) / (2 * little) == pytest.approx(here.second, rel=1e-6)
+        ends = motion.at(time - dt), motion.at(time + dt)
+        instant = motion.at(time)
+        assert (ends[1].place - ends[0].place) / (2 * dt) == pytest.approx(instant.rate, rel=1e-6)
+        assert (ends[1].rate - ends[0].rate) / (2 * dt) == pytest.approx(instant.second, rel=1e-6)
 
 
 def test_a_ramp_starts_from_rest_and_ends_without_a_jump():
@@ -146,9 +146,9 @@ TIMES = {"times": [0.0, 1.0, 2.0]}
 SWAY = [[0.0, 0.0, 0.0], [0.1, 0.0, 0.0], [0.0, 0.0, 0.0]]
 
 
-def moved(motion, **more):
+def params_with_motion(motion, **changes):
     tables = {f"boundary.motion.{key}": value for key, value in motion.items()}
-    return fluid_params(spacing=0.1, sound_speed=40.0, **(TANK | more | tables))
+    return fluid_params(spacing=0.1, sound_speed=40.0, **(TANK | changes | tables))
 
 
 @pytest.mark.parametrize(
@@ -173,14 +173,14 @@ def test_a_motion_that_says_too_little_or_too_much_is_refused(motion, match):
     if not motion:
         motion = {"axis": [0.0, 1.0, 0.0]}
     with pytest.raises(ValidationError, match=match):
-        moved(motion)
+        params_with_motion(motion)
 
 
 Y, X = [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]
 
 
 @pytest.mark.parametrize(
-    ("motion", "more", "match"),
+    ("motion", "changes", "match"),
     [
         (ROLL | {"axis": X}, {"dimensions": 2}, "in the plane of x and z in two dimensions"),
         ({"period": 1.0, "amplitude": Y}, {"dimensions": 2}, "found displacements along y"),
@@ -193,18 +193,18 @@ Y, X = [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]
         (ROLL | {"axis": Y}, {"boundary.walls": None}, "needs walls, obstacles or meshes"),
     ],
 )
-def test_a_motion_that_the_tank_cannot_follow_is_refused(motion, more, match):
+def test_a_motion_that_the_tank_cannot_follow_is_refused(motion, changes, match):
     with pytest.raises(ValidationError, match=match):
-        moved(motion, **more)
+        params_with_motion(motion, **changes)
 
 
 @pytest.mark.parametrize(
-    ("motion", "more"),
+    ("motion", "changes"),
     [
         (ROLL | {"axis": [0.0, -2.0, 0.0]}, {"dimensions": 2}),
         (ROLL | {"axis": Y}, {"boundary.symmetry": ["y-"]}),
         ({"period": 1.0, "amplitude": X}, {"boundary.symmetry": ["y-", "y+"]}),
     ],
 )
-def test_motions_in_the_plane_are_taken(motion, more):
-    assert moved(motion, **more).boundary.motion.trajectory.at(0.3)
+def test_motions_in_the_plane_are_taken(motion, changes):
+    assert params_with_motion(motion, **changes).boundary.motion.trajectory.at(0.3)

@@ -1,4 +1,4 @@
-"""Unions of spheres and agglomerates in water are pushed up by the weight of what they displace."""
+"""Unions of spheres and agglomerates are pushed up by the weight of the displaced water."""
 
 import numpy as np
 import pytest
@@ -50,8 +50,8 @@ def push(body, folder, begin, end):
         )
     )
     request = {key.replace("surface", "motion"): x for key, x in fluid.describe().items()}
-    both = {"motion.mirror": np.ones(1), "motion.dimensions": np.full(1, 3.0)}
-    samples = bodies.sample(request | both)
+    options = {"motion.mirror": np.ones(1), "motion.dimensions": np.full(1, 3.0)}
+    samples = bodies.sample(request | options)
     static = {f"surface.{key}": samples[f"motion.{key}"] for key in ("normal", "volume", "body")}
     fluid.bind(static, frozenset({"surface"}))
     fields = {
@@ -61,16 +61,16 @@ def push(body, folder, begin, end):
     }
     fluid.prime(fields)
     fluid.take(fields)
-    time, spent, impulse = 0.0, 0.0, np.zeros(3)
+    time, duration, impulse = 0.0, 0.0, np.zeros(3)
     while time < end:
         dt = fluid.stable_dt()
         fluid.step(dt)
         time += dt
         if time > begin:
-            spent += dt
+            duration += dt
             impulse += dt * outputs_of(fluid)["surface_load.force"].sum(axis=0)
     weight = 9810.0 * float(bodies.describe()["motion.mass"][0])  # of 1 kg/m3: the volume
-    return impulse / spent / weight
+    return impulse / duration / weight
 
 
 @pytest.mark.parametrize("shape", ["spheres", "mesh"])
@@ -100,8 +100,8 @@ def test_samples_of_a_body_are_as_many_as_cubes_of_the_spacing_that_it_holds(
     bodies = DemBodies(read(DemBodiesParams, table, "bodies", tmp_path)[0])
     spacing = 2.0 * RADIUS / across
     request = {"spacing": spacing, "depth": 1.0, "inset": 0.5 * spacing, "mirror": 1.0}
-    asked = {f"motion.{key}": np.full(1, x) for key, x in (request | {"dimensions": 3.0}).items()}
+    fields = {f"motion.{key}": np.full(1, x) for key, x in (request | {"dimensions": 3.0}).items()}
     volume = float(bodies.describe()["motion.mass"][0])
-    samples = bodies.sample(asked)["motion.volume"]
+    samples = bodies.sample(fields)["motion.volume"]
     assert len(samples) == round(volume / spacing**3)
     assert samples.sum() == pytest.approx(volume, rel=1e-9)

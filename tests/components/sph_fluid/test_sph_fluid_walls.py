@@ -1,4 +1,4 @@
-"""Where walls stand, where samples are wanted, and how walls drag."""
+"""Places of wall particles, the depth of samples, and the drag of walls."""
 
 import numpy as np
 import pytest
@@ -14,17 +14,17 @@ TANK = {
 }
 
 
-def params(**given):
-    return fluid_params(spacing=0.1, sound_speed=40.0, **TANK, **given)
+def params(**changes):
+    return fluid_params(spacing=0.1, sound_speed=40.0, **TANK, **changes)
 
 
 @pytest.mark.parametrize("wall_offset", [0.5, 1.5, 2.5])
 def test_wall_particles_are_as_far_out_as_asked(wall_offset):
-    one = params(boundary__wall_offset=wall_offset)
-    wall = wall_points(one)
+    parameters = params(boundary__wall_offset=wall_offset)
+    wall = wall_points(parameters)
     assert wall.min(axis=0) == pytest.approx([-0.1 * wall_offset] * 3)
     assert wall[:, 0].max() == pytest.approx(1.0 + 0.1 * wall_offset)
-    assert particles(one) == len(wall) + 5 * 5 * 3
+    assert particles(parameters) == len(wall) + 5 * 5 * 3
 
 
 def test_samples_are_wanted_at_their_depth():
@@ -35,11 +35,11 @@ def test_samples_are_wanted_at_their_depth():
 
 @pytest.mark.parametrize(("factor", "drags"), [(0.0, False), (1.0, True)])
 def test_walls_drag_only_with_a_viscosity_factor(factor, drags):
-    # At rest density there is no pressure: what slows a fluid that slides on its wall is drag.
-    one = params(
+    # There is no pressure at rest density: drag alone slows a fluid that slides on its wall.
+    parameters = params(
         boundary__wall_viscosity_factor=factor, gravity=(0.0, 0.0, 0.0), viscosity__artificial=0.5
     )
-    fluid = SphFluid(one)
+    fluid = SphFluid(parameters)
     rows = slice(fluid.state.fluid)
     fluid.state.velocity_pressure[rows, 1] = 1.0
     before = fluid.totals().momentum[1]

@@ -45,13 +45,15 @@ FLAP = REGULAR | {"paddle": "flap", "hinge": [-0.03, 0.0, 0.0]}
 ZONE = {"lowest": [0.4, 0.0, 0.0], "highest": [0.8, 1.0, 0.4], "towards": "x+"}
 
 
-def settings(waves, **more):
+def settings(waves, **changes):
     pistons = [{"part": "obstacles.0", "waves": waves}] if waves else []
-    return BASE | {"boundary.pistons": pistons} | {k.replace("__", "."): v for k, v in more.items()}
+    return (
+        BASE | {"boundary.pistons": pistons} | {k.replace("__", "."): v for k, v in changes.items()}
+    )
 
 
-def fluid_with(waves, **more):
-    fluid = SphFluid(fluid_params(**settings(waves, **more)))
+def fluid_with(waves, **changes):
+    fluid = SphFluid(fluid_params(**settings(waves, **changes)))
     fluid.bind({}, frozenset())
     return fluid
 
@@ -82,22 +84,24 @@ def test_a_flap_turns_by_the_stroke_at_still_water():
 
 
 def test_irregular_waves_have_the_bits_of_their_seed():
-    paths = [fluid_params(**settings(SEA | {"seed": seed})) for seed in (3, 3, 4)]
-    first, again, other = (p.boundary.pistons[0].waves.trajectory.at(7.7).place for p in paths)
-    assert np.array_equal(first, again) and not np.array_equal(first, other)
+    scenes = [fluid_params(**settings(SEA | {"seed": seed})) for seed in (3, 3, 4)]
+    first, same_seed, other_seed = (
+        p.boundary.pistons[0].waves.trajectory.at(7.7).place for p in scenes
+    )
+    assert np.array_equal(first, same_seed) and not np.array_equal(first, other_seed)
 
 
 def test_a_sea_of_two_components_is_followed_until_both_are_at_their_extreme():
     """Their frequencies have no common period: the course reaches the sum of the amplitudes."""
     waves = fluid_params(**settings(SEA | {"components": 2})).boundary.pistons[0].waves
     motion = waves.trajectory
-    most = float(np.abs(motion.amplitudes).sum())
+    amplitude = float(np.abs(motion.amplitudes).sum())
     assert motion.frequencies[1] != 2.0 * motion.frequencies[0]
-    assert motion.course()[:, 0].max() == pytest.approx(most, rel=0.02)
+    assert motion.course()[:, 0].max() == pytest.approx(amplitude, rel=0.02)
 
 
 @pytest.mark.parametrize(
-    ("waves", "more"),
+    ("waves", "changes"),
     [
         (REGULAR | {"order": 2, "absorption": True}, {}),
         (SEA, {}),
@@ -105,9 +109,9 @@ def test_a_sea_of_two_components_is_followed_until_both_are_at_their_extreme():
     ],
 )
 @pytest.mark.parametrize("scheme", ["symplectic", "extrapolated"])
-def test_a_saved_state_goes_on_with_the_same_bits(waves, more, scheme):
+def test_a_saved_state_goes_on_with_the_same_bits(waves, changes, scheme):
     first, second = (
-        fluid_with(waves | {"ramp": 0.2}, integration=scheme, boundary__damping=[ZONE], **more)
+        fluid_with(waves | {"ramp": 0.2}, integration=scheme, boundary__damping=[ZONE], **changes)
         for _ in range(2)
     )
     dt = 4e-4
@@ -124,7 +128,7 @@ def test_a_saved_state_goes_on_with_the_same_bits(waves, more, scheme):
 
 
 def test_damping_takes_the_energy_that_it_counts():
-    """A zone over all of the water, without weight: what it takes is what the motion loses."""
+    """A zone covers all of the water, without weight: it takes the energy that motion loses."""
     free = {"gravity": [0.0, 0.0, 0.0], "viscosity.artificial": 0.0}
     zone = ZONE | {"lowest": [0.0, 0.0, 0.0], "rate": 4.0}
     moving = {"initial": {"velocity": ["0.1", "0.0", "0.0"]}}
@@ -137,8 +141,8 @@ def test_damping_takes_the_energy_that_it_counts():
     dt = 1e-4
     fluid.step(dt)
     kinetic, u = fluid.totals().kinetic, fluid.state.velocity_pressure[: fluid.state.fluid, 0]
-    order, at = np.argsort(fluid.state.identity), np.argsort(x)
-    assert np.sort(order).size == at.size
+    order, start_order = np.argsort(fluid.state.identity), np.argsort(x)
+    assert np.sort(order).size == start_order.size
     assert fluid.damping.work == pytest.approx(kinetic - start.kinetic, rel=1e-6)
     share = np.sort(fluid.state.position_density[: fluid.state.fluid, 0]) / 0.8
     expected = 0.1 / (1.0 + 4.0 * dt * share**2)
@@ -147,18 +151,18 @@ def test_damping_takes_the_energy_that_it_counts():
 
 
 def test_a_zone_points_to_the_side_that_it_says():
-    slow = {}
+    correlations = {}
     for side in ("x+", "x-", "z+"):
         fluid = fluid_with({}, boundary__obstacles=[], boundary__damping=[ZONE | {"towards": side}])
         rows, strength = fluid.damping._inside(fluid.damping.zones[0], fluid.state)
         place = fluid.state.position_density[rows]
-        slow[side] = np.corrcoef(place[:, 0 if side[0] == "x" else 2], strength)[0, 1]
+        correlations[side] = np.corrcoef(place[:, 0 if side[0] == "x" else 2], strength)[0, 1]
         assert place[:, 0].min() > 0.4 and 0.0 < strength.min() and strength.max() < 1.0
-    assert slow["x+"] > 0.9 and slow["x-"] < -0.9 and slow["z+"] > 0.9
+    assert correlations["x+"] > 0.9 and correlations["x-"] < -0.9 and correlations["z+"] > 0.9
 
 
 def test_an_absorbing_piston_gives_way_to_water_that_is_too_high():
-    """Water 5 mm deeper than the waves of the paddle are for, which it takes to be a wave."""
+    """Water is 5 mm deeper than the waves of the paddle assume; the paddle sees a wave."""
     fluid = fluid_with(REGULAR | {"absorption": True, "ramp": 50.0})
     fluid.pistons.parts[0].correction.level -= 0.005
     fluid.step(2e-4)
@@ -166,9 +170,9 @@ def test_an_absorbing_piston_gives_way_to_water_that_is_too_high():
     assert part.added_velocity == pytest.approx(-math.sqrt(9.81 / 0.2) * 0.005, rel=0.25)
     for _ in range(100):
         fluid.step(2e-4)
-    moved = float(fluid.state.position_density[fluid.samples.row, 0].max())
+    end = float(fluid.state.position_density[fluid.samples.row, 0].max())
     start = float(part.points[:, 0].max())
-    assert moved - start == pytest.approx(part.added, abs=2e-5)
+    assert end - start == pytest.approx(part.added, abs=2e-5)
     assert part.added < 0.0
 
 
@@ -226,7 +230,7 @@ FAR_SIDE = box((0.8, 0.0, 0.0), (0.9, 1.0, 0.4)) | {
 
 
 @pytest.mark.parametrize(
-    ("waves", "more", "match"),
+    ("waves", "changes", "match"),
     [
         (REGULAR | {"height": 0.15}, {}, "less than that of breaking waves, 0.1"),
         (SEA | {"significant_height": 0.15}, {}, "significant_height must be less than that of"),
@@ -262,9 +266,9 @@ FAR_SIDE = box((0.8, 0.0, 0.0), (0.9, 1.0, 0.4)) | {
         (REGULAR | {"heading": [1.0, 1.0, 0.0]}, {}, "in the plane of x and z in two dimensions"),
     ],
 )
-def test_waves_that_cannot_be_made_so_are_refused(waves, more, match):
+def test_waves_that_cannot_be_made_so_are_refused(waves, changes, match):
     with pytest.raises(ValidationError, match=match):
-        fluid_params(**settings(waves, **more))
+        fluid_params(**settings(waves, **changes))
 
 
 def test_a_face_of_the_tank_makes_no_waves():

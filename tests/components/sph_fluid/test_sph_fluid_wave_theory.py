@@ -51,26 +51,26 @@ def by_volume(height, k, amplitude, area):
     return (a * a / 8.0 * (3.0 - t * t) / t**3 - 0.5 * amplitude * a) / area
 
 
-@pytest.mark.parametrize(("period", "within"), [(4.0, 0.01), (16.0, 1e-3), (32.0, 2e-4)])
-def test_second_order_tends_to_madsen_in_long_waves(period, within):
+@pytest.mark.parametrize(("period", "tolerance"), [(4.0, 0.01), (16.0, 1e-3), (32.0, 2e-4)])
+def test_second_order_tends_to_madsen_in_long_waves(period, tolerance):
     omega, height = 2.0 * math.pi / period, 0.1 / period
     k = wave_number(omega, DEPTH, G)
     paddle = Paddle(DEPTH, None, G)
     stroke = height / transfer(omega, paddle, 0)[1][0].real
     motion = second_order(0.5 * stroke, omega, paddle)
-    assert motion.real == pytest.approx(madsen(height, k * DEPTH, stroke), rel=within)
-    assert abs(motion.imag) < within * motion.real
+    assert motion.real == pytest.approx(madsen(height, k * DEPTH, stroke), rel=tolerance)
+    assert abs(motion.imag) < tolerance * motion.real
 
 
-@pytest.mark.parametrize(("period", "within"), [(16.0, 0.003), (32.0, 1e-3)])
-def test_second_order_of_a_flap_tends_to_that_by_volume(period, within):
+@pytest.mark.parametrize(("period", "tolerance"), [(16.0, 0.003), (32.0, 1e-3)])
+def test_second_order_of_a_flap_tends_to_that_by_volume(period, tolerance):
     omega, height = 2.0 * math.pi / period, 0.1 / period
     k = wave_number(omega, DEPTH, G)
     paddle = Paddle(DEPTH, DEPTH, G)
     amplitude = 0.5 * height / transfer(omega, paddle, 0)[1][0].real
     motion = second_order(amplitude, omega, paddle)
     expected = by_volume(height, k, amplitude, 0.5 * DEPTH)
-    assert motion.real == pytest.approx(expected, rel=within)
+    assert motion.real == pytest.approx(expected, rel=tolerance)
 
 
 def test_second_order_grows_with_the_square_of_the_motion():
@@ -84,10 +84,10 @@ def test_spectrum_has_its_height_and_peak_and_the_bits_of_its_seed():
     assert 4.0 * math.sqrt(0.5 * (amplitude**2).sum()) == pytest.approx(0.1, rel=1e-12)
     assert omega[np.argmax(amplitude)] == pytest.approx(2.0 * math.pi / 1.4, rel=0.02)
     assert (np.diff(omega) > 0.0).all() and (0.0 <= phase).all() and phase.max() < 2.0 * math.pi
-    again, other = components(0.1, 1.4, 3.3, 200, 7), components(0.1, 1.4, 3.3, 200, 8)
-    for rows, first in zip(again, (amplitude, omega, phase), strict=True):
-        assert np.array_equal(rows, first)
-    assert not np.array_equal(other[2], phase)
+    same_seed, other_seed = components(0.1, 1.4, 3.3, 200, 7), components(0.1, 1.4, 3.3, 200, 8)
+    for rows, expected in zip(same_seed, (amplitude, omega, phase), strict=True):
+        assert np.array_equal(rows, expected)
+    assert not np.array_equal(other_seed[2], phase)
     r = np.array([0.7, 1.0, 1.6])
     pierson = r**-5.0 * np.exp(-1.25 * r**-4.0)
     assert jonswap(r, 1.0) == pytest.approx(pierson)
@@ -107,8 +107,8 @@ def test_rates_of_a_paddle_are_derivatives_of_its_place():
             assert now.second == pytest.approx(second, abs=1e-6)
         else:
             assert not now.place.any() and not now.rate.any()
-    reached = max(abs(motion.at(2.0 + t).place[3]) for t in np.linspace(0.0, 3.2, 400))
-    assert np.abs(motion.course()[:, 3]).max() == pytest.approx(reached, rel=1e-3)
+    largest = max(abs(motion.at(2.0 + t).place[3]) for t in np.linspace(0.0, 3.2, 400))
+    assert np.abs(motion.course()[:, 3]).max() == pytest.approx(largest, rel=1e-3)
 
 
 def test_the_surface_far_from_a_paddle_is_the_wave():

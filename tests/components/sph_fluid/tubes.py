@@ -31,19 +31,19 @@ TUBE: dict[str, Any] = {  # fluid between plates that let it slip, in uniform mo
 MASS = 1000.0 * SPACING**2  # kg, of a particle over 1 m
 
 
-def params_of(table: dict[str, Any], **given: Any) -> SphFluidParams:
-    params, mistakes = read(SphFluidParams, nested(table | given), "water")
+def params_of(table: dict[str, Any], **changes: Any) -> SphFluidParams:
+    params, mistakes = read(SphFluidParams, nested(table | changes), "water")
     assert not mistakes, mistakes
     return params
 
 
-def tube(**given: Any) -> SphFluid:
-    return SphFluid(params_of(TUBE, **given))
+def tube(**changes: Any) -> SphFluid:
+    return SphFluid(params_of(TUBE, **changes))
 
 
 def run(fluid: SphFluid, end: float) -> None:
-    now = 0.0
-    while now < end - 1e-12:
-        dt = min(fluid.stable_dt(), end - now)
+    time = 0.0
+    while time < end - 1e-12:
+        dt = min(fluid.stable_dt(), end - time)
         fluid.step(dt)
-        now += dt
+        time += dt
