@@ -18,14 +18,14 @@ from quintet.interfaces.errors import QuintetError, SceneError
 def main(arguments: Sequence[str] = ()) -> int:
     """Print the devices; status 2 where there are none that work."""
     try:
-        known = devices()
-        if not known:
+        all_devices = devices()
+        if not all_devices:
             raise SceneError(NO_DEVICE[0].upper() + NO_DEVICE[1:])
     except QuintetError as error:
         print(error, file=sys.stderr)
         return 2
     rows: list[dict[str, Any]] = []
-    for device in known:
+    for device in all_devices:
         try:
             rows.append(row_of(device))
         except (opencl().Error, QuintetError) as error:  # others may work
@@ -44,7 +44,7 @@ def main(arguments: Sequence[str] = ()) -> int:
 
 
 def row_of(device: Device) -> dict[str, Any]:
-    """What is listed of a device; its bandwidth is measured."""
+    """Row of the table for one device; its bandwidth is measured."""
     return {
         "device": f"opencl:{device.number}",
         "name": device.name,

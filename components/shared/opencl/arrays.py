@@ -43,8 +43,8 @@ class DeviceArray:
     def put(self, array: NDArray[Any]) -> None:
         """Write an array of the same shape."""
         if array.size:
-            whole = np.ascontiguousarray(array, self.dtype)
-            opencl().enqueue_copy(self.queue, self.memory, whole, is_blocking=True)
+            contiguous = np.ascontiguousarray(array, self.dtype)
+            opencl().enqueue_copy(self.queue, self.memory, contiguous, is_blocking=True)
 
     def get(self, first: int = 0) -> NDArray[Any]:
         """Read the rows of the array, from the first one on."""
@@ -71,9 +71,11 @@ def run(queue: Any, kernel: Any, rows: int, *arguments: Any) -> None:
     if rows:
         items = -(-rows // GROUP) * GROUP
         try:
-            kernel(queue, (items,), (GROUP,), *(_plain(each) for each in arguments))
+            kernel(queue, (items,), (GROUP,), *(_plain(argument) for argument in arguments))
         except opencl().MemoryError as error:  # drivers may make room when it is first used
-            sizes = (each.memory.size for each in arguments if isinstance(each, DeviceArray))
+            sizes = (
+                argument.memory.size for argument in arguments if isinstance(argument, DeviceArray)
+            )
             raise StepError(
                 f"device {queue.device.name.strip()}: what it computes with must fit into its "
                 f"memory of {queue.device.global_mem_size} bytes; found no room for "

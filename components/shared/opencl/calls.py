@@ -22,7 +22,7 @@ def intrinsic(
     place: Place, precision: Precision, function: Any, arguments: list[Value], node: ast.Call
 ) -> Value | None:
     """Print a call of a function that OpenCL has; None for others."""
-    kinds = [each.kind for each in arguments]
+    kinds = [argument.kind for argument in arguments]
     is_known = function in EXTREMES or function in TO_REAL or function in TO_INT
     if not (is_known or function is abs or function in SCALAR):
         return None
@@ -38,23 +38,27 @@ def intrinsic(
     if function in EXTREMES:
         kind = max(*kinds, INT, key=NUMBERS.index)
         result = converted(arguments[0], kind, precision).code
-        for each in arguments[1:]:
-            more = converted(each, kind, precision).code
-            result = f"{EXTREMES[function]}_{c_name(kind)}({result}, {more})"
+        for argument in arguments[1:]:
+            operand = converted(argument, kind, precision).code
+            result = f"{EXTREMES[function]}_{c_name(kind)}({result}, {operand})"
         return Value(result, kind)
     if function is abs and kinds == [INT]:
         return Value(f"abs_long({arguments[0].code})", INT)
-    name, takes, gives = ("fabs", (REAL,), REAL) if function is abs else SCALAR[function]
+    name, argument_kinds, result_kind = (
+        ("fabs", (REAL,), REAL) if function is abs else SCALAR[function]
+    )
     if function in BITS and precision == "single":
         raise place.refuse(
             node, f"`{ast.unparse(node)}` in single precision", "Print it in double precision."
         )
-    if len(takes) != len(arguments):
-        raise place.refuse(node, f"`{ast.unparse(node)}`", f"Give it {len(takes)} arguments.")
+    if len(argument_kinds) != len(arguments):
+        raise place.refuse(
+            node, f"`{ast.unparse(node)}`", f"Give it {len(argument_kinds)} arguments."
+        )
     if in_lanes:
-        if gives != REAL:
+        if result_kind != REAL:
             raise place.refuse(node, f"`{ast.unparse(node)}` of several lanes", ONE_LANE)
-        takes, gives = (LANES,) * len(takes), LANES
-    pairs = zip(arguments, takes, strict=True)
-    codes = ", ".join(converted(each, kind, precision).code for each, kind in pairs)
-    return Value(f"{name}({codes})", gives)
+        argument_kinds, result_kind = (LANES,) * len(argument_kinds), LANES
+    pairs = zip(arguments, argument_kinds, strict=True)
+    codes = ", ".join(converted(argument, kind, precision).code for argument, kind in pairs)
+    return Value(f"{name}({codes})", result_kind)

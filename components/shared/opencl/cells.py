@@ -25,7 +25,7 @@ def source(program: Program) -> str:
     """Print the laws of cells; return the kernels."""
     name, _ = program.add(cell_of, 0.0, 0.0, 0.0, GRID)
     names = {"REACH": REACH, "cell_of": name, "Grid": program.struct(GRID)}
-    defined = "\n".join(f"#define {each} {meaning}" for each, meaning in names.items())
+    defined = "\n".join(f"#define {macro} {meaning}" for macro, meaning in names.items())
     return f"{defined}\n{SOURCE.read_text()}"
 
 
@@ -88,7 +88,7 @@ class Cells:
         return start
 
     def lists(
-        self, position: DeviceArray, look: DeviceArray | None, split: int, count: int, grid: Grid,
+        self, position: DeviceArray, places: DeviceArray | None, split: int, count: int, grid: Grid,
         starts: tuple[DeviceArray, DeviceArray], reach: float, extremes: DeviceArray,
     ) -> NearLists:  # fmt: skip
         """List the neighbours within a reach [m] of each row; rows are sorted by cell.
@@ -96,20 +96,20 @@ class Cells:
         Parameters
         ----------
         position : (n, 4) array, m
-        look : (n - split or more, 3) array, m, or None
+        places : (n - split or more, 3) array, m, or None
             Places that look in place of rows from `split` on, and lists for more places than there
             are rows; these look for the first alone.
         extremes : (n or more, 4) array
             Written; it has a row for each list.
         """
-        count = max(count, split + look.shape[0]) if look else count
+        count = max(count, split + places.shape[0]) if places else count
         middle, end = (DeviceArray(self.queue, (count,), np.int32) for _ in range(2))
         while True:
             by_rows = (self.width, 1) if self.by_rows else (1, count)
             row_stride, item_stride = map(np.int64, by_rows)
             near = DeviceArray(self.queue, (count * self.width,), np.int32)
             run(
-                self.queue, self._search, count, position, look, np.int32(split), np.int32(count),
+                self.queue, self._search, count, position, places, np.int32(split), np.int32(count),
                 bytes_of(grid, np.float64), *starts, np.float64(reach * reach),
                 np.int32(self.width), row_stride, item_stride, near, middle, end, extremes,
             )  # fmt: skip

@@ -104,7 +104,7 @@ def devices() -> list[Device]:
 
 def is_any_there() -> bool:
     """Whether this machine has pyopencl, and its first device double precision."""
-    return is_installed("pyopencl") and any(each.has_doubles for each in devices()[:1])
+    return is_installed("pyopencl") and any(device.has_doubles for device in devices()[:1])
 
 
 def device_of(name: str) -> Device:
@@ -121,15 +121,15 @@ def device_of(name: str) -> Device:
             f"device must be cpu, opencl, or opencl:0 and so on; found {name!r}. "
             "`quintet devices` lists the devices of this machine."
         )
-    number, known = int(form[1] or 0), devices()
-    if not known:
+    number, all_devices = int(form[1] or 0), devices()
+    if not all_devices:
         raise SceneError(f"device {name}: {NO_DEVICE}")
-    if number >= len(known):
+    if number >= len(all_devices):
         raise SceneError(
-            f"device {name}: there must be one of this number; found {len(known)}, from opencl:0 "
-            "on. `quintet devices` lists them."
+            f"device {name}: there must be one of this number; found {len(all_devices)}, "
+            "from opencl:0 on. `quintet devices` lists them."
         )
-    return known[number]
+    return all_devices[number]
 
 
 def build(queue: Any, text: str, precision: Precision = "double") -> Any:
@@ -149,15 +149,15 @@ def bandwidth(device: Device) -> float:
     cl, queue = opencl(), device.queue()
     count = min(COPIED, device.memory // 16, int(device.handle.max_mem_alloc_size) // 4)
     flags = cl.mem_flags.READ_WRITE
-    first, second = (cl.Buffer(queue.context, flags, size=4 * count) for _ in range(2))
+    source, target = (cl.Buffer(queue.context, flags, size=4 * count) for _ in range(2))
     zero = np.zeros(1, np.float32)
-    for each in (first, second):  # memory is there once it was written
-        cl.enqueue_fill_buffer(queue, each, zero, 0, 4 * count)
+    for buffer in (source, target):  # memory is there once it was written
+        cl.enqueue_fill_buffer(queue, buffer, zero, 0, 4 * count)
     kernel, best = build(queue, COPY).copy, 0.0
     queue.finish()
     for _ in range(ROUNDS):
         start = time.perf_counter()
-        kernel(queue, (count,), None, first, second)
+        kernel(queue, (count,), None, source, target)
         queue.finish()
         best = max(best, 8 * count / (time.perf_counter() - start))
     return best

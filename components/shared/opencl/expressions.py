@@ -26,7 +26,7 @@ from quintet.components.shared.opencl.values import Value, converted, literal, r
 
 
 class Printer(Protocol):
-    """What a program does for the expressions of its laws."""
+    """Methods of a program that the expressions of its laws call."""
 
     precision: Precision
 
@@ -48,7 +48,7 @@ class Expressions:
     program : Printer
     place : Place
     names : dict
-        What names that are no locals stand for.
+        Values of names that are not locals.
     kinds : dict
         Types of locals.
     """
@@ -101,7 +101,7 @@ class Expressions:
             raise self.refuse(node, f"a constant {value!r:.60}, no number", PASS_NUMBERS) from None
 
     def known(self, node: ast.expr) -> Any:
-        """What a name outside of the law stands for; `inspect.Parameter.empty` for others."""
+        """Value of a name outside of the law; `inspect.Parameter.empty` for others."""
         if isinstance(node, ast.Name) and node.id not in self.kinds:
             return self.names.get(node.id, inspect.Parameter.empty)
         if isinstance(node, ast.Attribute):
@@ -206,7 +206,9 @@ class Expressions:
             self.program.add_power(c_name(kind), exponent.number)
             return Value(f"{power_name(c_name(kind), exponent.number)}({base.code})", kind)
         kind = max(base.kind, exponent.kind, REAL, key=NUMBERS.index)
-        a, b = (converted(each, kind, self.program.precision).code for each in (base, exponent))
+        a, b = (
+            converted(operand, kind, self.program.precision).code for operand in (base, exponent)
+        )
         return Value(f"pow({a}, {b})", kind)
 
     def _compare(self, node: ast.Compare) -> Value:
@@ -216,12 +218,12 @@ class Expressions:
         for op, right in zip(node.ops, node.comparators, strict=True):
             operands.append(self.print(right))
             pair = operands[-2:]
-            if type(op) not in COMPARED or any(each.kind not in NUMBERS for each in pair):
+            if type(op) not in COMPARED or any(operand.kind not in NUMBERS for operand in pair):
                 raise self.refuse(node, f"`{ast.unparse(node)}`", "Compare numbers.")
             kind = max(pair[0].kind, pair[1].kind, key=NUMBERS.index)
             if kind == LANES:
                 raise self.refuse(node, f"`{ast.unparse(node)}` of several lanes", ONE_LANE)
-            a, b = (converted(each, kind, self.program.precision).code for each in pair)
+            a, b = (converted(operand, kind, self.program.precision).code for operand in pair)
             parts.append(f"({a} {COMPARED[type(op)]} {b})")
         return Value(parts[0] if len(parts) == 1 else f"({' && '.join(parts)})", FLAG)
 
@@ -234,8 +236,8 @@ class Expressions:
 
     def _boolop(self, node: ast.BoolOp) -> Value:
         is_and, parts = isinstance(node.op, ast.And), []
-        for each in node.values:
-            value = self.condition(each)
+        for operand in node.values:
+            value = self.condition(operand)
             if value.number is None:
                 parts.append(value.code)
             elif value.number != is_and:  # what comes after it is never looked at
@@ -243,8 +245,8 @@ class Expressions:
                 break
         if not parts:
             return self.constant(is_and, node)
-        known = (not is_and) if len(parts) == 1 and parts[0] == str(int(not is_and)) else None
-        return Value(f"({(' && ' if is_and else ' || ').join(parts)})", FLAG, known)
+        number = (not is_and) if len(parts) == 1 and parts[0] == str(int(not is_and)) else None
+        return Value(f"({(' && ' if is_and else ' || ').join(parts)})", FLAG, number)
 
     def _ifexp(self, node: ast.IfExp) -> Value:
         test = self.condition(node.test)
@@ -267,32 +269,34 @@ class Expressions:
             ) from None
 
     def _call(self, node: ast.Call) -> Value:
-        if node.keywords or any(isinstance(each, ast.Starred) for each in node.args):
+        if node.keywords or any(isinstance(argument, ast.Starred) for argument in node.args):
             raise self.refuse(node, f"`{ast.unparse(node)}`", "Pass arguments by position.")
         function = self.known(node.func)
         if function is inspect.Parameter.empty:
             raise self.refuse(node, f"a call of `{ast.unparse(node.func)}`", PASS_NUMBERS)
-        arguments = [self.print(each) for each in node.args]
+        arguments = [self.print(argument) for argument in node.args]
         if isinstance(function, type) and hasattr(function, "_fields"):
             return self._record(function, arguments, node)
         if function is len and isinstance(arguments[0].kind, Row | Record):
-            whole = arguments[0].kind
-            return self.constant(len(whole.items if isinstance(whole, Row) else whole.fields), node)
+            container = arguments[0].kind
+            return self.constant(
+                len(container.items if isinstance(container, Row) else container.fields), node
+            )
         if (
             value := intrinsic(self.place, self.program.precision, function, arguments, node)
         ) is not None:
             return value
         if not isinstance(getattr(function, "py_func", function), python_types.FunctionType):
             raise self.refuse(node, f"a call of `{ast.unparse(node.func)}`", PASS_NUMBERS)
-        name, kind = self.program.add(function, *(each.kind for each in arguments))
-        codes = ", ".join(each.code for each in arguments if each.kind != NONE)
+        name, kind = self.program.add(function, *(argument.kind for argument in arguments))
+        codes = ", ".join(argument.code for argument in arguments if argument.kind != NONE)
         return Value(f"{name}({codes})", kind)
 
     def _record(self, function: Any, arguments: list[Value], node: ast.Call) -> Value:
         """Make a named tuple."""
         if len(arguments) != len(function._fields):
             raise self.refuse(node, f"`{ast.unparse(node)}`", "Give it all its fields.")
-        kinds = (each.kind for each in arguments)
+        kinds = (argument.kind for argument in arguments)
         record = Record(function.__name__, tuple(zip(function._fields, kinds, strict=True)))
         named = self.program.add_type(record)
         assert isinstance(named, Record)

@@ -1,4 +1,4 @@
-"""What every printed program begins with: precision, and operations as numba has them."""
+"""First lines of each printed program: precision, and operations that match numba's."""
 
 from typing import Literal
 

@@ -69,7 +69,7 @@ class Program:
             With file, line, construct and what to do.
         """
         python: FunctionType = getattr(function, "py_func", function)
-        kinds = tuple(self.add_type(type_of(each)) for each in arguments)
+        kinds = tuple(self.add_type(type_of(argument)) for argument in arguments)
         if (python, kinds) not in self._functions:
             self._functions[python, kinds] = self._print(python, kinds)
         return self._functions[python, kinds]
@@ -86,14 +86,14 @@ class Program:
         """Print the struct of a type, and those of its fields; return it by its name in C."""
         if isinstance(kind, Row):
             kind = Row(tuple(map(self.add_type, kind.items)))
-            fields = [(f"f{number}", each) for number, each in enumerate(kind.items)]
+            fields = [(f"f{number}", field_kind) for number, field_kind in enumerate(kind.items)]
             self._add_struct(kind.name, fields)
             return kind
         if not isinstance(kind, Record):
             return kind
         if kind in self._records:
             return self._records[kind]
-        named = tuple((name, self.add_type(each)) for name, each in kind.fields)
+        named = tuple((name, self.add_type(field_kind)) for name, field_kind in kind.fields)
         record = Record(self._free_name(kind.name), named)
         self._add_struct(record.name, list(record.stored))
         self._records[kind] = self._records[record] = record
@@ -107,16 +107,16 @@ class Program:
 
     def _free_name(self, name: str) -> str:
         """Return a name that is not used yet."""
-        number, free = 1, name
-        while free in self._used:
+        number, candidate = 1, name
+        while candidate in self._used:
             number += 1
-            free = f"{name}_{number}"
-        self._used.add(free)
-        return free
+            candidate = f"{name}_{number}"
+        self._used.add(candidate)
+        return candidate
 
     def _add_struct(self, name: str, fields: list[tuple[str, Type]]) -> None:
         if name not in self._structs:
-            lines = [f"{INDENT}{each.name} {identifier(field)};" for field, each in fields]
+            lines = [f"{INDENT}{kind.name} {identifier(field)};" for field, kind in fields]
             body = "\n".join(line for line in lines if " none " not in line)
             self._structs[name] = f"typedef struct {{\n{body}\n}} {name};"
 
@@ -126,7 +126,7 @@ class Program:
             raise place.refuse(
                 definition, f"{function.__name__}, which calls itself", "Write a loop."
             )
-        parameters = [each.arg for each in definition.args.args]
+        parameters = [parameter.arg for parameter in definition.args.args]
         if len(parameters) != len(kinds) or _has_more(definition.args):
             raise place.refuse(
                 definition, f"{len(kinds)} arguments for `{ast.unparse(definition.args)}`",
@@ -140,8 +140,10 @@ class Program:
         self._open.pop()
         assert statements.returned is not None
         name = self._free_name(function_name(function))
-        used = [each for each in parameters if types[each] != NONE]
-        declared = ", ".join(f"{types[each].name} {identifier(each)}" for each in used)
+        used = [parameter for parameter in parameters if types[parameter] != NONE]
+        declared = ", ".join(
+            f"{types[parameter].name} {identifier(parameter)}" for parameter in used
+        )
         head = f"static inline {statements.returned.name} {name}({declared}) {{"
         lines = [head, *locals_of(types, set(parameters)), *body, "}"]
         self._printed.append("\n".join(lines))
@@ -168,6 +170,6 @@ def _has_more(arguments: ast.arguments) -> bool:
 
 
 def _names_outside(function: FunctionType) -> dict[str, Any]:
-    """What names outside of a function stand for: of what encloses it, of its module, of Python."""
+    """Values of names outside of a function: of enclosing functions, its module and Python."""
     outside = inspect.getclosurevars(function).nonlocals
     return {**vars(builtins), **function.__globals__, **outside}

@@ -27,12 +27,12 @@ class Statements:
     def print(self, body: list[ast.stmt]) -> list[str]:
         """Print the body of a function."""
         while True:
-            before, self.lines, self.temporaries = (dict(self.kinds), self.returned), [], 0
+            previous, self.lines, self.temporaries = (dict(self.kinds), self.returned), [], 0
             if not self._block(body, 1):
                 raise self.refuse(
                     body[-1], "a way to its end without a value", "Return a value at the end."
                 )
-            if before == (self.kinds, self.returned):
+            if previous == (self.kinds, self.returned):
                 return self.lines
 
     def _write(self, line: str, depth: int) -> None:
@@ -55,8 +55,8 @@ class Statements:
                 self._assign(target, value, node, depth)
             case ast.AugAssign(target=ast.Name() as target, op=op, value=value):
                 read = ast.copy_location(ast.Name(target.id, ast.Load()), target)
-                whole = ast.copy_location(ast.BinOp(read, op, value), node)
-                self._assign(target, whole, node, depth)
+                operation = ast.copy_location(ast.BinOp(read, op, value), node)
+                self._assign(target, operation, node, depth)
             case ast.Return(value=ast.expr() as value):
                 self._return(value, node, depth)
                 return True
@@ -105,11 +105,11 @@ class Statements:
         if not (is_range and isinstance(target, ast.Name)) or node.orelse:
             raise self.refuse(node, text, remedy)
         assert isinstance(call, ast.Call)
-        bounds = [self.expressions.print(each) for each in call.args]
-        is_known = all(each.kind == INT and each.number is not None for each in bounds)
+        bounds = [self.expressions.print(bound) for bound in call.args]
+        is_known = all(bound.kind == INT and bound.number is not None for bound in bounds)
         if self.expressions.known(call.func) is not range or not is_known or call.keywords:
             raise self.refuse(node, text, remedy)
-        numbers = range(*(each.number for each in bounds))
+        numbers = range(*(bound.number for bound in bounds))
         self._declare(target, INT, node)
         name = identifier(target.id)
         sign = "<" if numbers.step > 0 else ">"
@@ -124,21 +124,23 @@ class Statements:
         printed = self.expressions.print(value)
         if isinstance(target, ast.Tuple) and printed.items is not None:
             # Values that name targets are kept before these change.
-            names = {each.id for each in ast.walk(target) if isinstance(each, ast.Name)}
-            read = {each.id for each in ast.walk(value) if isinstance(each, ast.Name)}
+            names = {name.id for name in ast.walk(target) if isinstance(name, ast.Name)}
+            read = {name.id for name in ast.walk(value) if isinstance(name, ast.Name)}
             if names & read:
-                printed = self._kept(printed, depth)
+                printed = self._in_temporaries(printed, depth)
         elif isinstance(target, ast.Tuple) and not printed.code.isidentifier():
             printed = Value(self._temporary(printed, depth), printed.kind)
         self._store(target, printed, node, depth)
 
-    def _kept(self, value: Value, depth: int) -> Value:
+    def _in_temporaries(self, value: Value, depth: int) -> Value:
         """Return the value, its numbers in new variables."""
         if value.items is None:
             if value.number is not None or value.kind == NONE:
                 return value
             return Value(self._temporary(value, depth), value.kind)
-        return Value("", value.kind, items=tuple(self._kept(each, depth) for each in value.items))
+        return Value(
+            "", value.kind, items=tuple(self._in_temporaries(item, depth) for item in value.items)
+        )
 
     def _temporary(self, value: Value, depth: int) -> str:
         self.temporaries += 1
@@ -156,8 +158,8 @@ class Statements:
                 raise self.refuse(
                     node, f"{count} values for {len(target.elts)} names", "Name each of them."
                 )
-            for number, each in enumerate(target.elts):
-                self._store(each, value.item(number), node, depth)
+            for number, element in enumerate(target.elts):
+                self._store(element, value.item(number), node, depth)
             return
         if not isinstance(target, ast.Name):
             raise self.refuse(
@@ -171,14 +173,14 @@ class Statements:
 
     def _declare(self, target: ast.Name, kind: Type, node: ast.stmt) -> Type:
         """Note the type of a local."""
-        before = self.kinds.get(target.id)
-        whole = kind if before is None else unified(before, kind)
-        if whole is None or (target.id in self.parameters and whole != before):
+        previous = self.kinds.get(target.id)
+        common = kind if previous is None else unified(previous, kind)
+        if common is None or (target.id in self.parameters and common != previous):
             raise self.refuse(
                 node, f"{target.id}, which changes its type", "Give the second value its own name."
             )
-        self.kinds[target.id] = whole
-        return whole
+        self.kinds[target.id] = common
+        return common
 
 
 def locals_of(kinds: dict[str, Type], parameters: set[str]) -> list[str]:

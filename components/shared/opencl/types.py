@@ -107,8 +107,8 @@ def unified(first: Type, second: Type) -> Type | None:
         return max(first, second, key=NUMBERS.index)
     if isinstance(first, Row) and isinstance(second, Row) and len(first.items) == len(second.items):
         items = [unified(*pair) for pair in zip(first.items, second.items, strict=True)]
-        known = tuple(item for item in items if item is not None)
-        return Row(known) if len(known) == len(items) else None
+        kinds = tuple(item for item in items if item is not None)
+        return Row(kinds) if len(kinds) == len(items) else None
     return None
 
 

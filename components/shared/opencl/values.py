@@ -1,4 +1,4 @@
-"""Printed values: their code, their type, and what is known of them as they are printed."""
+"""Printed values: their code, their type, and their number where it is known when printed."""
 
 import math
 from dataclasses import dataclass
@@ -107,7 +107,7 @@ def converted(value: Value, kind: Type, precision: Precision) -> Value:
         if value.items is None:
             raise ValueError
         pairs = zip(value.items, kind.items, strict=True)
-        return row([converted(item, other, precision) for item, other in pairs])
+        return row([converted(item, item_kind, precision) for item, item_kind in pairs])
     assert kind in (REAL, INT)
     return Value(f"({'real' if kind == REAL else 'long'})({value.code})", kind)
 
