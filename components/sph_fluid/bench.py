@@ -91,11 +91,11 @@ def tank(inside: tuple[int, int, int], fluid: tuple[int, int, int], sound: float
 
 
 def cube() -> tuple[Fields, Fields]:
-    """What a link tells of a cube of samples at rest: once, and before each step."""
+    """Fields of a link for a cube of samples at rest: sent once, and before each step."""
     line = SPACING * (np.arange(round(CUBE / SPACING)) + 0.5)
     arm = np.stack(np.meshgrid(line, line, line), axis=-1).reshape(-1, 3)
-    near = np.minimum(arm, CUBE - arm).min(axis=1)
-    arm = arm[near < SUPPORT * 1.5 * SPACING]
+    depth = np.minimum(arm, CUBE - arm).min(axis=1)
+    arm = arm[depth < SUPPORT * 1.5 * SPACING]
     ones = np.ones(len(arm))
     static = {
         "surface.normal": np.tile([0.0, 0.0, 1.0], (len(arm), 1)),

@@ -25,8 +25,8 @@ def state(params: SphFluidParams) -> State:
     pairs = zip(boxes, params.boxes, strict=True)
     dense = [hydrostatic(points, box, params) for points, box in pairs]
     if params.shapes:
-        more = shape_points(params)
-        boxes, dense = boxes + more, dense + shape_density(more, params)
+        shape_particles = shape_points(params)
+        boxes, dense = boxes + shape_particles, dense + shape_density(shape_particles, params)
     start = State.empty(sum(map(len, boxes)), len(wall))
     start.position_density[:, :3] = np.concatenate([*boxes, wall])
     start.position_density[:, 3] = np.concatenate([*dense, wall_density(wall, params)])
@@ -55,10 +55,10 @@ def shape_points(params: SphFluidParams) -> list[Array]:
 def shape_density(points: list[Array], params: SphFluidParams) -> list[Array]:
     """Density (n,) kg/m3 of each shape: under its highest point at rest, or ρ₀."""
     return [
-        hydrostatic(some, shape.bounds, params)
+        hydrostatic(particles, shape.bounds, params)
         if shape.hydrostatic
-        else np.full(len(some), params.density)
-        for some, shape in zip(points, params.shapes, strict=True)
+        else np.full(len(particles), params.density)
+        for particles, shape in zip(points, params.shapes, strict=True)
     ]
 
 
@@ -93,8 +93,10 @@ def _offsets(points: Array, box: Bounds, params: SphFluidParams) -> Array:
     for end, side in enumerate(("x-", "x+") if params.boundary.tank else ()):
         if side not in params.boundary.open_faces:
             assert params.boundary.tank is not None
-            clear = np.abs(points[:, 0] - params.boundary.tank[end][0]) / (FADING * params.spacing)
-            offset *= np.minimum(clear, 1.0)
+            wall_distance = np.abs(points[:, 0] - params.boundary.tank[end][0]) / (
+                FADING * params.spacing
+            )
+            offset *= np.minimum(wall_distance, 1.0)
     return np.asarray(offset * (high[0] - low[0]) / counts[0])
 
 
@@ -109,15 +111,15 @@ def hydrostatic(points: Array, box: Bounds, params: SphFluidParams) -> Array:
 
 def _surface(box: Bounds, params: SphFluidParams) -> float:
     """Level [m] of the surface over a box: its own upper face, or that of boxes on it."""
-    top, little = levels(box, params.hydrostatic_gravity)[1], 1e-6 * params.spacing
+    top, tolerance = levels(box, params.hydrostatic_gravity)[1], 1e-6 * params.spacing
     level = top
-    for other in params.boxes if any(params.hydrostatic_gravity) else ():
-        ends = zip(*box, *other, strict=True)
-        shared = [min(high, upper) - max(low, lower) for low, high, lower, upper in ends]
-        beside = min(shared) > -little and sum(width > little for width in shared) > 1
-        lowest, highest = levels(other, params.hydrostatic_gravity)
-        if beside and abs(lowest - top) < little < highest - top:
-            level = max(level, _surface(other, params))
+    for other_box in params.boxes if any(params.hydrostatic_gravity) else ():
+        ends = zip(*box, *other_box, strict=True)
+        overlap = [min(high, upper) - max(low, lower) for low, high, lower, upper in ends]
+        beside = min(overlap) > -tolerance and sum(width > tolerance for width in overlap) > 1
+        lowest, highest = levels(other_box, params.hydrostatic_gravity)
+        if beside and abs(lowest - top) < tolerance < highest - top:
+            level = max(level, _surface(other_box, params))
     return level
 
 
@@ -128,7 +130,7 @@ def wall_density(wall: Array, params: SphFluidParams) -> Array:
         return density
     for box in params.boxes:
         low, high = np.array(box)
-        near = (params.boundary.wall_offset + 0.51) * params.spacing
-        rows = np.flatnonzero(((wall > low - near) & (wall < high + near)).all(axis=1))
+        margin = (params.boundary.wall_offset + 0.51) * params.spacing
+        rows = np.flatnonzero(((wall > low - margin) & (wall < high + margin)).all(axis=1))
         density[rows] = np.maximum(density[rows], hydrostatic(wall[rows], box, params))
     return density

@@ -152,8 +152,8 @@ class SphFluid(Component):
         if self.state.steps % judgement.EVERY == 0:
             isolated = not len(self.samples.volume) and self.params.boundary.is_still
             judgement.note(self.state, self.params, self.totals(), isolated, self.all_ranks)
-        others = (self.team, self.films, self.all_ranks)
-        apply = partial(self.pairs.apply_forces, self.state, self.lists.arrays, dt, *others)
+        parts = (self.team, self.films, self.all_ranks)
+        apply = partial(self.pairs.apply_forces, self.state, self.lists.arrays, dt, *parts)
         task = StepTask(dt, rows, rate, partial(self._compute_rates, dt), apply)
         moved, state = self.integration.step(self.state, task, self.team), self.state
         shift2, failures, fastest, approach = self.all_ranks.greatest(
@@ -209,17 +209,17 @@ class SphFluid(Component):
 
     def save(self) -> Fields:
         """Copy out all state; the neighbour list is kept as the places it was made from."""
-        whole = self.all_ranks.whole(self.state).save()
-        others = self.frame.save() | self.pistons.save() | self.open_boundaries.save()
-        others |= self.damping.save() | {"reach": np.array(self.lists.reach)}
-        return whole | {"placed": np.array(self.samples.placed)} | others
+        gathered = self.all_ranks.whole(self.state).save()
+        part_states = self.frame.save() | self.pistons.save() | self.open_boundaries.save()
+        part_states |= self.damping.save() | {"reach": np.array(self.lists.reach)}
+        return gathered | {"placed": np.array(self.samples.placed)} | part_states
 
     def load(self, state: Fields) -> None:
         """Come back to a saved state, of this run or of another that it begins from."""
         self.open_boundaries.refuse_other(state)
-        most = math.inf if self.items_vary else self.born
+        limit = math.inf if self.items_vary else self.born
         diagnostics.refuse_other_samples(state, len(self.samples.volume))
-        diagnostics.refuse_other_particles(state, most, self.all_ranks.boundary(self.state))
+        diagnostics.refuse_other_particles(state, limit, self.all_ranks.boundary(self.state))
         self.state, self.samples.placed = State.load(state), bool(state["placed"])
         self.state.fit_damper(self.params.acoustic_damper > 0.0)
         self.all_ranks.load(self.state)

@@ -1,4 +1,4 @@
-"""What is found by looking over all of the fluid: its totals, and where it failed."""
+"""Totals of the fluid, and the particle and place of a failure."""
 
 import math
 
@@ -18,7 +18,7 @@ from quintet.interfaces.errors import SceneError, StepError
 from quintet.interfaces.sums import finite
 
 MACH = 0.5  # of the speed of sound: what strikes the fluid faster is refused
-OTHERS = "a particle failed; rank 0 names it."  # said by the other ranks
+OTHERS = "a particle failed; rank 0 names it."  # message of the other ranks
 MOST_LOST = 2000  # particles among which the first one is sought
 FEW = 1e-3  # of the fluid: so many particles may be denser for no such reason
 
@@ -63,21 +63,21 @@ def _elastic(density: Array, params: SphFluidParams, constants: Constants) -> Ar
 
 def failure(state: State, params: SphFluidParams, dt: float, ranks: Ranks) -> StepError:
     """Say which particle of all ranks a step [s] failed on, and what to do; rank 0 alone knows."""
-    whole = ranks.whole(state)
-    worst = 0 if ranks.rank else _worst(whole, params.spacing, dt)
-    owner = ranks.owner(state, 0 if ranks.rank else int(whole.identity[worst]))
+    gathered = ranks.whole(state)
+    worst = 0 if ranks.rank else _worst(gathered, params.spacing, dt)
+    owner = ranks.owner(state, 0 if ranks.rank else int(gathered.identity[worst]))
     if ranks.rank:
         return StepError(OTHERS)
-    x, y, z, density = whole.position_density[worst].tolist()
-    if not math.isfinite(x + y + z) and len(whole.reference) > worst:
-        x, y, z = whole.reference[worst].tolist()  # where it was in the last lists
-    speed = math.hypot(*whole.velocity_pressure[worst, :3].tolist())
+    x, y, z, density = gathered.position_density[worst].tolist()
+    if not math.isfinite(x + y + z) and len(gathered.reference) > worst:
+        x, y, z = gathered.reference[worst].tolist()  # where it was in the last lists
+    speed = math.hypot(*gathered.velocity_pressure[worst, :3].tolist())
     text = (
         f"step {state.steps} of {dt:.3g} s: a fluid particle must stay finite, have a positive "
         f"density and move less than a spacing ({params.spacing:.3g} m); particle "
-        f"{whole.identity[worst]}{owner} at ({x:.4g}, {y:.4g}, {z:.4g}) m has {speed:.4g} m/s and "
-        f"{density:.4g} kg/m3. Lower courant (now {params.courant}), raise viscosity.artificial or "
-        "sound_speed, or look for a surface that moves too fast."
+        f"{gathered.identity[worst]}{owner} at ({x:.4g}, {y:.4g}, {z:.4g}) m has {speed:.4g} m/s "
+        f"and {density:.4g} kg/m3. Lower courant (now {params.courant}), raise "
+        "viscosity.artificial or sound_speed, or look for a surface that moves too fast."
     )
     return StepError(text, (x, y, z))
 
@@ -108,10 +108,10 @@ def _origin(listed: Array, lost: Whole) -> int:
         return int(lost[0])
     low, high = listed[lost].min(axis=0), listed[lost].max(axis=0)
     size = float(np.linalg.norm(high - low))
-    near = np.flatnonzero(((listed >= low - size) & (listed <= high + size)).all(axis=1))
-    is_lost = np.isin(near, lost)
-    away = (np.linalg.norm(listed[near] - listed[row], axis=1) for row in lost)
-    nearest = (np.argsort(distance, kind="stable")[: len(lost)] for distance in away)
+    near_rows = np.flatnonzero(((listed >= low - size) & (listed <= high + size)).all(axis=1))
+    is_lost = np.isin(near_rows, lost)
+    distances = (np.linalg.norm(listed[near_rows] - listed[row], axis=1) for row in lost)
+    nearest = (np.argsort(distance, kind="stable")[: len(lost)] for distance in distances)
     return int(lost[np.argmax([int(is_lost[rows].sum()) for rows in nearest])])
 
 
@@ -119,9 +119,9 @@ def _worst(state: State, spacing: float, dt: float) -> int:
     """Row of the fluid particle at no place, or not finite, or the fastest, or the thinnest."""
     rows = slice(state.fluid)
     position, velocity = state.position_density[rows], state.velocity_pressure[rows]
-    placed = np.isfinite(position[:, :3]).all(axis=1)
-    if not placed.all():
-        return _origin(state.reference[rows], np.flatnonzero(~placed))
+    has_place = np.isfinite(position[:, :3]).all(axis=1)
+    if not has_place.all():
+        return _origin(state.reference[rows], np.flatnonzero(~has_place))
     finite = np.isfinite(position).all(axis=1) & np.isfinite(velocity).all(axis=1)
     if not finite.all():
         return int(np.argmin(finite))
@@ -136,12 +136,12 @@ def refuse_other_particles(saved: Fields, fluid: float, boundary: int) -> None:
     Particles may have left the domain since the start: those that ever were there count. `fluid`
     is infinite where more of them may come.
     """
-    there, born = len(saved["identity"]), int(np.max(saved["identity"], initial=-1)) + 1
+    count, born = len(saved["identity"]), int(np.max(saved["identity"], initial=-1)) + 1
     walls = len(saved["sample"])
-    if there > fluid or born > fluid:
+    if count > fluid or born > fluid:
         raise SceneError(
             f"the state that it begins from must be of a fluid with {fluid:.0f} particles or fewer "
-            f"at the start; found {there} particles, of at least {born} that there were. Make "
+            f"at the start; found {count} particles, of at least {born} that there were. Make "
             "fluid and spacing as they were in that run."
         )
     if walls != boundary:
@@ -181,21 +181,21 @@ def refuse_dense(state: State, params: SphFluidParams, ranks: Ranks) -> None:
     u = c₀/2 is a density that nothing slower reaches. Single drops of spray that walls squeeze are
     let go.
     """
-    most = params.density * (1.0 + TAIT * MACH) ** (1.0 / TAIT)
-    (dense,) = ranks.count(int((state.position_density[: state.fluid, 3] > most).sum()))
+    densest = params.density * (1.0 + TAIT * MACH) ** (1.0 / TAIT)
+    (dense,) = ranks.count(int((state.position_density[: state.fluid, 3] > densest).sum()))
     if dense <= FEW * ranks.fluid(state):
         return
-    whole = ranks.whole(state)
-    worst = 0 if ranks.rank else int(np.argmax(whole.position_density[: whole.fluid, 3]))
-    owner = ranks.owner(state, 0 if ranks.rank else int(whole.identity[worst]))
+    gathered = ranks.whole(state)
+    worst = 0 if ranks.rank else int(np.argmax(gathered.position_density[: gathered.fluid, 3]))
+    owner = ranks.owner(state, 0 if ranks.rank else int(gathered.identity[worst]))
     if ranks.rank:
         raise StepError(OTHERS)
     raise StepError(
         f"step {state.steps}: what strikes the fluid must be slower than half its sound_speed "
         f"({MACH * params.sound_speed:.3g} m/s), a tenth to be right, so that its density stays "
-        f"below {most:.4g} kg/m3; {_met(whole, worst, owner)} Raise sound_speed to ten times the "
-        "largest velocity, or slow what moves.",
-        whole.position_density[worst, :3],
+        f"below {densest:.4g} kg/m3; {_met(gathered, worst, owner)} Raise sound_speed to ten times "
+        "the largest velocity, or slow what moves.",
+        gathered.position_density[worst, :3],
     )
 
 

@@ -81,14 +81,14 @@ def _outside(state: State, params: SphFluidParams) -> int:
     if params.boundary.tank is None or not _is_open_above_alone(params):
         return 0
     (low, high), points = params.boundary.tank, state.position_density[: state.fluid]
-    beyond = np.zeros(state.fluid, bool)
+    is_outside = np.zeros(state.fluid, bool)
     for face in params.closed_faces:
         axis = "xyz".index(face[0])
         if face[1] == "-":
-            beyond |= points[:, axis] < low[axis] - params.spacing
+            is_outside |= points[:, axis] < low[axis] - params.spacing
         else:
-            beyond |= points[:, axis] > high[axis] + params.spacing
-    return int(beyond.sum())
+            is_outside |= points[:, axis] > high[axis] + params.spacing
+    return int(is_outside.sum())
 
 
 def _layers(params: SphFluidParams) -> float:
@@ -120,10 +120,12 @@ def _equivalent(params: SphFluidParams) -> float:
     return params.viscosity.alpha * sound / (4.0 * (params.dimensions + 2))
 
 
-def _most_artificial(params: SphFluidParams, held: float, judged: Array, mass: float) -> Limit:
+def _most_artificial(
+    params: SphFluidParams, weight_energy: float, judged: Array, mass: float
+) -> Limit:
     """Largest equivalent viscosity [m2/s] that leaves the flow as it is, and why.
 
-    `held` [J] is m g depth, `mass` [kg] that of all the fluid. Fluid at rest bears any.
+    `weight_energy` [J] is m g depth, `mass` [kg] that of all the fluid. Fluid at rest bears any.
     """
     kinematic = params.viscosity.kinematic
     if kinematic > 0.0:
@@ -132,13 +134,13 @@ def _most_artificial(params: SphFluidParams, held: float, judged: Array, mass: f
         # Lamb 1932, article 348: A falls as exp(-2νk²t).
         number, g = 2.0 * np.pi / params.wave.length, float(np.linalg.norm(params.gravity))
         period = 2.0 * np.pi / params.wave.frequency(params.depth, g)
-        most = MOST_DAMPED / (2.0 * number**2 * period)
-        return most, f"a wave must lose less than {MOST_DAMPED:.0%} of its height in a period"
+        limit = MOST_DAMPED / (2.0 * number**2 * period)
+        return limit, f"a wave must lose less than {MOST_DAMPED:.0%} of its height in a period"
     speed = float(np.sqrt(2.0 * judged[SHEARED] / mass))
-    if held > 0.0:
-        if max(judged[KINETIC], judged[RELEASED]) < FLOWING * held:
+    if weight_energy > 0.0:
+        if max(judged[KINETIC], judged[RELEASED]) < FLOWING * weight_energy:
             return np.inf, ""
-        speed = max(speed, float(np.sqrt(held / mass)))
+        speed = max(speed, float(np.sqrt(weight_energy / mass)))
     elif speed < LEAST_MACH * params.sound_speed:
         return np.inf, ""
     extent = _extent(params)
@@ -150,18 +152,18 @@ def _most_artificial(params: SphFluidParams, held: float, judged: Array, mass: f
 
 
 def _of_viscosity(
-    params: SphFluidParams, held: float, judged: Array, mass: float
+    params: SphFluidParams, weight_energy: float, judged: Array, mass: float
 ) -> dict[str, str]:
     """Whether artificial viscosity is so large that it changes the flow."""
     equivalent = _equivalent(params)
-    most, reason = _most_artificial(params, held, judged, mass)
-    if equivalent <= most:
+    limit, reason = _most_artificial(params, weight_energy, judged, mass)
+    if equivalent <= limit:
         return {}
     alpha = params.viscosity.alpha
     return {
         "viscosity": f"viscosity.artificial must be small beside what moves or thickens the fluid; "
         f"{alpha:g} acts as {equivalent:.2g} m2/s, and {reason}. Set viscosity.artificial to "
-        f"{alpha * most / equivalent:.2g} or less, or refine the spacing; of a fluid that is as "
+        f"{alpha * limit / equivalent:.2g} or less, or refine the spacing; of a fluid that is as "
         "viscous set viscosity.kinematic, and viscosity.artificial to 0."
     }
 
@@ -183,10 +185,10 @@ def warnings(state: State, params: SphFluidParams, mass: float, ranks: Ranks) ->
             f"{params.courant:g}), refine the spacing, raise the walls, or open the faces through "
             "which it shall leave."
         )
-    held = mass * fluid * float(np.linalg.norm(params.gravity)) * params.depth  # J
-    texts |= _of_viscosity(params, held, judged, mass * fluid)
+    weight_energy = mass * fluid * float(np.linalg.norm(params.gravity)) * params.depth  # J
+    texts |= _of_viscosity(params, weight_energy, judged, mass * fluid)
     layers = _layers(params)
-    if layers < LEAST_LAYERS and judged[KINETIC] > FLOWING * held > 0.0:
+    if layers < LEAST_LAYERS and judged[KINETIC] > FLOWING * weight_energy > 0.0:
         texts["resolution"] = (
             f"fluid that flows must be {LEAST_LAYERS} particles or more wide and deep at the "
             f"start; found {layers:.3g}. Refine the spacing."
@@ -197,8 +199,8 @@ def warnings(state: State, params: SphFluidParams, mass: float, ranks: Ranks) ->
             f"a wave needs kernel and smoothing {' or '.join(least)} or more, or it decays 10 % to "
             f"70 % too fast; found {params.kernel} with {params.smoothing:g}. Set them."
         )
-    ready = READY * held
-    scale = max(float(judged[KINETIC]), ready)
+    threshold = READY * weight_energy
+    scale = max(float(judged[KINETIC]), threshold)
     if judged[GAINED] > MOST_GAINED * scale > 0.0:
         texts["energy"] = (
             "the energy of fluid in a tank at rest must not rise; it rose by "

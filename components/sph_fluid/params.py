@@ -151,10 +151,10 @@ class SphFluidParams:
         if dimensions == 2:
             walls = () if boundary.tank is None else (boundary.tank,)
             checks.check_slab([*self.extents, *walls, *boundary.solids], self.gravity)
-        apart = 3.0 * self.smoothing_length
-        checks.check_symmetry(boundary, dimensions, self.gravity, apart, spacing)
+        pair_range = 3.0 * self.smoothing_length
+        checks.check_symmetry(boundary, dimensions, self.gravity, pair_range, spacing)
         if boundary.periodic:
-            self._check_periodic(apart)
+            self._check_periodic(pair_range)
         if boundary.inflow or boundary.outflow:
             self._check_flow()
         checks.check_moved(boundary)
@@ -198,11 +198,11 @@ class SphFluidParams:
         fluid = (self.density, self.sound_speed, self.negative_pressure)
         check_pressures(edge.outflow, *fluid)
 
-    def _check_periodic(self, apart: float) -> None:
+    def _check_periodic(self, pair_range: float) -> None:
         # Left out of scenes whose tank does not repeat.
         from quintet.components.sph_fluid.setup.periodic_checks import check_periodic
 
-        check_periodic(self.boundary, self.dimensions, self.gravity, apart, self.spacing)
+        check_periodic(self.boundary, self.dimensions, self.gravity, pair_range, self.spacing)
         if self.gauges.front_gauge in self.boundary.periodic:
             raise ValueError(
                 "gauges.front_gauge must not lie along an axis on which the tank repeats, where "
@@ -289,8 +289,8 @@ class SphFluidParams:
     @property
     def passages(self) -> list[Face]:
         """Faces through which fluid comes, then those through which it goes."""
-        entrances = [each.face for each in self.boundary.inflow]
-        return entrances + [each.face for each in self.boundary.outflow]
+        entrances = [passage.face for passage in self.boundary.inflow]
+        return entrances + [passage.face for passage in self.boundary.outflow]
 
     @property
     def closed_faces(self) -> tuple[Face, ...]:

@@ -24,8 +24,8 @@ def view(state: State) -> Fields:
 def wall_faces(params: SphFluidParams) -> list[Array]:
     """Corners (k, 3) m of all closed faces of tank, obstacles and meshes, but those of pistons."""
     boundary = params.boundary
-    moved = {piston.face for piston in boundary.pistons}
-    closed = [face for face in params.closed_faces if face not in moved]
+    moving_faces = {piston.face for piston in boundary.pistons}
+    closed = [face for face in params.closed_faces if face not in moving_faces]
     faces = box(*boundary.tank, closed) if boundary.tank else []
     sides = [face for face in FACES if params.dimensions == 3 or face[0] != "y"]
     standing = [bounds for bounds in boundary.solids if bounds not in boundary.moved_solids]
@@ -35,8 +35,8 @@ def wall_faces(params: SphFluidParams) -> list[Array]:
 
 def _faces_of_meshes(params: SphFluidParams) -> list[Array]:
     """Triangles (3, 3) m of the surfaces from files that stand."""
-    moved = params.boundary.moved_meshes
-    standing = [mesh for mesh in params.boundary.meshes if mesh not in moved]
+    moving_meshes = params.boundary.moved_meshes
+    standing = [mesh for mesh in params.boundary.meshes if mesh not in moving_meshes]
     if not standing:
         return []
     # Left out of scenes without boundaries from files.

@@ -56,7 +56,7 @@ class Faces(NamedTuple):
 
 
 def find_faces(state: State, ranks: Ranks, spacing: float) -> Faces:
-    """Find what films may lie between.
+    """Find the faces that films may lie between.
 
     As the neighbour lists do, it goes by where all was when they were made, so that a state that
     is loaded finds the same films.
@@ -91,33 +91,49 @@ def find_films(faces: Faces, samples: Samples, spacing: float, constants: Consta
         position[second], normal[second], owner[second],
         near(position[first], position[second], furthest), spacing, partner,
     )  # fmt: skip
-    mine, theirs = first[partner >= 0], second[partner[partner >= 0]]
-    across = face_normals(normal[mine], normal[theirs])
-    below = np.einsum("nd,nd->n", normal[mine], across)
-    foot = position[mine] + 0.5 * below[:, None] * across
-    own_share = np.zeros(len(mine))
+    sample_rows, partner_rows = first[partner >= 0], second[partner[partner >= 0]]
+    direction = face_normals(normal[sample_rows], normal[partner_rows])
+    below = np.einsum("nd,nd->n", normal[sample_rows], direction)
+    foot = position[sample_rows] + 0.5 * below[:, None] * direction
+    own_share = np.zeros(len(sample_rows))
     felt = near(foot, position[rows], BEYOND * constants.smoothing.support)
     add_own_volume(
-        foot, owner[mine], position[rows], owner[rows], samples.volume, felt, constants, own_share
+        foot,
+        owner[sample_rows],
+        position[rows],
+        owner[rows],
+        samples.volume,
+        felt,
+        constants,
+        own_share,
     )
-    count = np.zeros(len(mine), np.int64)
-    table = np.zeros((len(mine), MOST), np.int64)
+    count = np.zeros(len(sample_rows), np.int64)
+    table = np.zeros((len(sample_rows), MOST), np.int64)
     reach = BESIDE * spacing
-    beside = near(position[mine], position[mine], BEYOND * reach)
-    list_film(position[mine], across, owner[mine], owner[theirs], beside, reach, count, table)
+    beside = near(position[sample_rows], position[sample_rows], BEYOND * reach)
+    list_film(
+        position[sample_rows],
+        direction,
+        owner[sample_rows],
+        owner[partner_rows],
+        beside,
+        reach,
+        count,
+        table,
+    )
     begin = np.concatenate([[0], np.cumsum(count)])
-    pairs = np.stack([owner[mine], owner[theirs]], axis=1)
-    _, which, members = np.unique(pairs, axis=0, return_inverse=True, return_counts=True)
+    pairs = np.stack([owner[sample_rows], owner[partner_rows]], axis=1)
+    _, pair, members = np.unique(pairs, axis=0, return_inverse=True, return_counts=True)
     listed = table[np.arange(MOST) < count[:, None]]
     return Films(
-        sample=sample[mine],
-        facing=sample[theirs],
-        row=mine,
-        across=theirs,
-        area=samples.volume[sample[mine]] / np.abs(below),
+        sample=sample[sample_rows],
+        facing=sample[partner_rows],
+        row=sample_rows,
+        across=partner_rows,
+        area=samples.volume[sample[sample_rows]] / np.abs(below),
         own_share=own_share,
-        rim=at_rim(position[mine], begin, listed, RIM * spacing),
-        size=spacing * np.sqrt(members[which.reshape(-1)]),
+        rim=at_rim(position[sample_rows], begin, listed, RIM * spacing),
+        size=spacing * np.sqrt(members[pair.reshape(-1)]),
         begin=begin,
         near=listed,
     )
@@ -128,5 +144,5 @@ def at_rim(position: Array, begin: Whole, near: Whole, distance: float) -> Array
     count = np.diff(begin)
     row = np.repeat(np.arange(len(position)), count)
     sums = [np.bincount(row, position[near, d], len(position)) for d in range(3)]
-    off = np.stack(sums, axis=1) - count[:, None] * position
-    return (count == 0) | (np.linalg.norm(off, axis=1) > distance * count)
+    offset = np.stack(sums, axis=1) - count[:, None] * position
+    return (count == 0) | (np.linalg.norm(offset, axis=1) > distance * count)

@@ -93,11 +93,11 @@ def advance(
     """Advance films by a step [s]; add their push to the samples' force."""
     spacing, density = params.spacing, params.density
     near_side, far_side = rows.now(state)
-    off, back = near_side[:, 5:] - near_side[:, :3], far_side[:, 5:] - far_side[:, :3]
-    across = face_normals(off, back)
-    below, beyond = (np.einsum("nd,nd->n", vectors, across) for vectors in (off, back))
-    foot = near_side[:, :3] + 0.5 * below[:, None] * across
-    gap = np.einsum("nd,nd->n", foot - far_side[:, :3], across) - 0.5 * beyond
+    near_arm, far_arm = near_side[:, 5:] - near_side[:, :3], far_side[:, 5:] - far_side[:, :3]
+    normal = face_normals(near_arm, far_arm)
+    below, beyond = (np.einsum("nd,nd->n", vectors, normal) for vectors in (near_arm, far_arm))
+    foot = near_side[:, :3] + 0.5 * below[:, None] * normal
+    gap = np.einsum("nd,nd->n", foot - far_side[:, :3], normal) - 0.5 * beyond
     width = np.maximum(gap, params.boundary.roughness)
     weight = density * np.array(params.gravity)
     outside = near_side[:, 4] * near_side[:, 3] ** 2
@@ -106,9 +106,9 @@ def advance(
     driving = max(float(outside[films.rim].max(initial=0.0)), 1.0)
     bound = width * films.size * np.sqrt(2.0 / (density * driving))
     transmissivity = np.minimum(width**3 / (12.0 * WATER), bound)
-    pressure, share, before = state.film[films.sample].T.copy()
-    known = before > 0.0
-    stored = np.where(known, share * before, 0.0)
+    pressure, share, previous_width = state.film[films.sample].T.copy()
+    had_film = previous_width > 0.0
+    stored = np.where(had_film, share * previous_width, 0.0)
     places = FilmPlaces(
         films.rim, films.begin, films.near, width, foot, outside, stored, transmissivity
     )
@@ -116,10 +116,10 @@ def advance(
     solve_reynolds(places, spacing**2 / dt, (x, y, z), SWEEPS, pressure, share)
     state.film[:] = 0.0
     state.film[films.sample] = np.stack([pressure, share, width], axis=1)
-    wet = rows.fluid_share(state, foot, lists, constants)
-    left = 2.0 * np.maximum(1.0 - films.own_share - wet, 0.0)
-    left *= np.clip((WIDEST - width / spacing) / FADING, 0.0, 1.0)
-    force = (pressure * left * films.area)[:, None] * across
+    water_share = rows.fluid_share(state, foot, lists, constants)
+    film_share = 2.0 * np.maximum(1.0 - films.own_share - water_share, 0.0)
+    film_share *= np.clip((WIDEST - width / spacing) / FADING, 0.0, 1.0)
+    force = (pressure * film_share * films.area)[:, None] * normal
     np.add.at(state.force, films.sample, force)
     bodies = films.facing >= 0
     np.add.at(state.force, films.facing[bodies], -force[bodies])

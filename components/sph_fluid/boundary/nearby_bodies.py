@@ -33,19 +33,19 @@ def bounds(place: Array, body: Whole, count: int) -> Bounds:
 
 def near_walls(bodies: Bounds, params: SphFluidParams, reach: float) -> NDArray[np.bool_]:
     """Which bodies (bodies,) are nearer to a wall or an obstacle than `reach` [m]."""
-    near = np.zeros(len(bodies.low), bool)
+    is_near = np.zeros(len(bodies.low), bool)
     if params.boundary.tank is not None:
         low, high = np.array(params.boundary.tank)
         for face in params.closed_faces:
             axis = "xyz".index(face[0])
             if face[1] == "-":
-                near |= bodies.low[:, axis] < low[axis] + reach
+                is_near |= bodies.low[:, axis] < low[axis] + reach
             else:
-                near |= bodies.high[:, axis] > high[axis] - reach
+                is_near |= bodies.high[:, axis] > high[axis] - reach
     for box in params.boundary.solids:
         low, high = np.array(box)
-        near |= ((bodies.low < high + reach) & (bodies.high > low - reach)).all(axis=1)
-    return near
+        is_near |= ((bodies.low < high + reach) & (bodies.high > low - reach)).all(axis=1)
+    return is_near
 
 
 def near_each_other(bodies: Bounds, reach: float) -> NDArray[np.bool_]:
@@ -58,8 +58,8 @@ def near_each_other(bodies: Bounds, reach: float) -> NDArray[np.bool_]:
     count = np.maximum(last - first - 1, 0)
     earlier: Whole = np.repeat(first, count)
     later = earlier + 1 + np.arange(len(earlier)) - np.repeat(np.cumsum(count) - count, count)
-    apart = (low[later] > high[earlier] + reach) | (low[earlier] > high[later] + reach)
-    near = ~apart.any(axis=1)
+    is_apart = (low[later] > high[earlier] + reach) | (low[earlier] > high[later] + reach)
+    is_near = ~is_apart.any(axis=1)
     has_neighbour = np.zeros(len(low), bool)
-    has_neighbour[order[earlier[near]]] = has_neighbour[order[later[near]]] = True
+    has_neighbour[order[earlier[is_near]]] = has_neighbour[order[later[is_near]]] = True
     return has_neighbour

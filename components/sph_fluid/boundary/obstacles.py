@@ -43,16 +43,16 @@ def count_obstacle_points(params: SphFluidParams) -> int:
         if max(steps) > MOST_ROWS:  # no machine holds as many; all of them, then
             count += math.prod(int(n) + 1 for n in steps)
             continue
-        whole, deep = 1, 1
+        total, unfelt = 1, 1
         for axis, rows in enumerate(steps):
             row = low[axis] + np.arange(int(rows) + 1) * step[axis]
-            away = [row - box[0][axis], box[1][axis] - row]
+            distances = [row - box[0][axis], box[1][axis] - row]
             nearest = np.min(
-                [np.where(wet[end, axis], away[end], np.inf) for end in (0, 1)], axis=0
+                [np.where(wet[end, axis], distances[end], np.inf) for end in (0, 1)], axis=0
             )
-            whole *= len(row)
-            deep *= int((nearest >= FELT * params.smoothing_length).sum())
-        count += whole - deep
+            total *= len(row)
+            unfelt *= int((nearest >= FELT * params.smoothing_length).sum())
+        count += total - unfelt
     return count
 
 
@@ -72,16 +72,18 @@ def from_meshes(
     params: SphFluidParams, meshes: Sequence[BoundaryMesh] | None = None
 ) -> tuple[Array, Array]:
     """Particles (n, 3) m behind surfaces from files, all or some, and their images (n, 3) m."""
-    none = np.zeros((0, 3))
+    empty = np.zeros((0, 3))
     meshes = params.boundary.meshes if meshes is None else meshes
     if not meshes:
-        return none, none
+        return empty, empty
     # Left out of scenes without boundaries from files.
     from quintet.components.sph_fluid.setup.mesh_points import mesh_points
 
-    moved = params.boundary.moved_meshes
+    moving_meshes = params.boundary.moved_meshes
     filling = params.mesh_filling
-    pairs = [mesh_points(mesh, filling.of_moved if mesh in moved else filling) for mesh in meshes]
+    pairs = [
+        mesh_points(mesh, filling.of_moved if mesh in moving_meshes else filling) for mesh in meshes
+    ]
     points, images = (np.concatenate(arrays) for arrays in zip(*pairs, strict=True))
     return points, images
 
@@ -112,8 +114,8 @@ def _rows(
         fewest[1] = 0
     half = 0.5 * plane  # (2, 3) of a step, from the plane to the first particle
     steps = np.maximum(fewest, np.round((high - low) / params.spacing - half.sum(axis=0)))
-    whole = steps + half.sum(axis=0)
-    step = np.divide(high - low, whole, out=np.zeros(3), where=whole > 0.0)
+    intervals = steps + half.sum(axis=0)
+    step = np.divide(high - low, intervals, out=np.zeros(3), where=intervals > 0.0)
     return steps, low + half[0] * step, high - half[1] * step, step, wet
 
 

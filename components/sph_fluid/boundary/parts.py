@@ -1,4 +1,4 @@
-"""What of walls, obstacles and meshes stands, and what moves as a piston does."""
+"""Parts of walls, obstacles and meshes that stand, and parts that move as pistons."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,11 +27,11 @@ def standing(params: SphFluidParams) -> Points:
         if piston.face:
             stays &= ~_behind(points, piston.face, params)
     walls = points[stays], images[stays]
-    moved = {piston.number("obstacles") for piston in edge.pistons}
-    left = [box for number, box in enumerate(edge.solids) if number not in moved]
-    boxes = obstacle_points(params, left), obstacle_mirrors(params, left)
-    moved = {piston.number("meshes") for piston in edge.pistons}
-    meshes = from_meshes(params, [m for n, m in enumerate(edge.meshes) if n not in moved])
+    moving_numbers = {piston.number("obstacles") for piston in edge.pistons}
+    still_boxes = [box for number, box in enumerate(edge.solids) if number not in moving_numbers]
+    boxes = obstacle_points(params, still_boxes), obstacle_mirrors(params, still_boxes)
+    moving_numbers = {piston.number("meshes") for piston in edge.pistons}
+    meshes = from_meshes(params, [m for n, m in enumerate(edge.meshes) if n not in moving_numbers])
     return _joined(walls, boxes, meshes)
 
 
@@ -40,8 +40,8 @@ def moving(params: SphFluidParams, piston: Piston) -> Points:
     edge = params.boundary
     if piston.face:
         points = wall_points(params)
-        behind = _behind(points, piston.face, params)
-        return points[behind], wall_mirrors(params)[behind]
+        is_behind = _behind(points, piston.face, params)
+        return points[is_behind], wall_mirrors(params)[is_behind]
     if (number := piston.number("obstacles")) >= 0:
         boxes = [edge.solids[number]]
         return obstacle_points(params, boxes), obstacle_mirrors(params, boxes)
@@ -67,10 +67,12 @@ def _behind(points: Array, face: str, params: SphFluidParams) -> NDArray[np.bool
     assert params.boundary.tank is not None
     low, high = np.array(params.boundary.tank)
     axis = "xyz".index(face[0])
-    beyond = points[:, axis] > high[axis] if face[1] == "+" else points[:, axis] < low[axis]
-    others = [k for k in range(3) if k != axis]
-    inside = ((points[:, others] > low[others]) & (points[:, others] < high[others])).all(axis=1)
-    return np.asarray(beyond & inside)
+    is_beyond = points[:, axis] > high[axis] if face[1] == "+" else points[:, axis] < low[axis]
+    other_axes = [k for k in range(3) if k != axis]
+    inside = (
+        (points[:, other_axes] > low[other_axes]) & (points[:, other_axes] < high[other_axes])
+    ).all(axis=1)
+    return np.asarray(is_beyond & inside)
 
 
 def _joined(*parts: Points) -> Points:

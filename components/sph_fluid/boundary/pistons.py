@@ -58,8 +58,8 @@ class Part:
         if self.correction is not None:
             forward = self.correction.forward
             place = self.trajectory.at(time).place.tolist()
-            along = sum(float(n) * x for n, x in zip(forward, place[:3], strict=True))
-            self.added_velocity = self.correction.velocity(state, time, along + self.added)
+            displacement = sum(float(n) * x for n, x in zip(forward, place[:3], strict=True))
+            self.added_velocity = self.correction.velocity(state, time, displacement + self.added)
 
     def finish(self, dt: float) -> None:
         """Go on to the end of a step [s]."""
@@ -177,8 +177,8 @@ class MovingPistons:
     def load(self, state: Fields) -> None:
         """Come back to a saved state."""
         self.time, self.work = np.asarray(state.get(SAVED, np.zeros(2))).tolist()
-        none = np.zeros(len(self.corrected))
-        for part, added in zip(self.corrected, state.get(CORRECTED, none).tolist(), strict=True):
+        zeros = np.zeros(len(self.corrected))
+        for part, added in zip(self.corrected, state.get(CORRECTED, zeros).tolist(), strict=True):
             part.added, part.clock = added, self.time
 
     def refuse_jump(self, saved: Fields) -> None:

@@ -20,20 +20,22 @@ def remove(state: State, samples: Samples, position: Array, params: SphFluidPara
     body, volume = samples.body[: len(position)], samples.volume[: len(position)]
     axes = [0, 2] if params.dimensions == 2 else [0, 1, 2]
     points, position = state.position_density[: state.fluid, axes], position[:, axes]
-    removed, notes = np.zeros(len(points), bool), []
+    is_removed, notes = np.zeros(len(points), bool), []
     mass = constants(params).mass * params.slab_thickness
     for number in np.unique(body):
         of_body = body == number
-        left = np.flatnonzero(~removed)
-        rows = left[displaced(points[left], position[of_body], volume[of_body], params.spacing)]
+        rows_left = np.flatnonzero(~is_removed)
+        rows = rows_left[
+            displaced(points[rows_left], position[of_body], volume[of_body], params.spacing)
+        ]
         if len(rows):
             notes.append(
                 f"body {number:g} stood in the fluid: {len(rows)} particles inside it, "
                 f"{len(rows) * mass:.4g} kg, were removed"
             )
-        removed[rows] = True
-    state.removed += int((removed & (state.role == 0) if len(state.role) else removed).sum())
-    state.keep(np.flatnonzero(~removed), np.arange(len(state.sample)))
+        is_removed[rows] = True
+    state.removed += int((is_removed & (state.role == 0) if len(state.role) else is_removed).sum())
+    state.keep(np.flatnonzero(~is_removed), np.arange(len(state.sample)))
     samples.find_rows(state)
     return notes
 
@@ -70,8 +72,8 @@ def filled(points: Array, position: Array, volume: Array, width: float) -> Array
         cKDTree(position), reach, p=np.inf, output_type="ndarray"
     )
     i, j = pairs["i"], pairs["j"]
-    apart = np.abs(points[i] - position[j])
-    common = 0.5 * (width + edge[j])[:, np.newaxis] - apart  # m, of two intervals side by side
+    distance = np.abs(points[i] - position[j])
+    common = 0.5 * (width + edge[j])[:, np.newaxis] - distance  # m, of two intervals side by side
     common = np.clip(common, 0.0, np.minimum(width, edge[j])[:, np.newaxis])
     shares = common.prod(axis=1) / width**dimensions
     return np.bincount(i, shares, len(points)).astype(np.float64)

@@ -64,21 +64,21 @@ class SelectiveFilms:
         columns = [state.reference[self.samples.row], (end > begin)[listed, np.newaxis]]
         of_all = self.ranks.all_rows(self.samples.number, np.concatenate(columns, axis=1))
         places, spacing = of_all[:, :3], self.params.spacing
-        wet = np.bincount(body, of_all[:, 3], len(number)) > 0.0
-        wet &= number >= 0.0  # pistons, whose numbers are negative, have none
-        if not wet.any():
+        is_wet = np.bincount(body, of_all[:, 3], len(number)) > 0.0
+        is_wet &= number >= 0.0  # pistons, whose numbers are negative, have none
+        if not is_wet.any():
             return
         boxes = bounds(places, body, len(number))
         if not self.lacking:
             reach = (WIDEST + INSET) * spacing
-            near = near_walls(boxes, self.params, reach)
-            near |= near_each_other(boxes, reach + INSET * spacing)
-            if (near & wet).any():
+            is_near = near_walls(boxes, self.params, reach)
+            is_near |= near_each_other(boxes, reach + INSET * spacing)
+            if (is_near & is_wet).any():
                 self.films = self._make_films()
                 self.films.join(state, {})
         elif not self.notes:
             reach = (TOUCHING + self.params.boundary.sample_depth) * spacing
-            for row in np.flatnonzero(near_walls(boxes, self.params, reach) & wet)[:1]:
+            for row in np.flatnonzero(near_walls(boxes, self.params, reach) & is_wet)[:1]:
                 self.notes.append(
                     f"body {number[row]:g} touches a wall under water, and no film of water "
                     f"presses between them, since {self.lacking}: it weighs on the wall what the "

@@ -52,8 +52,8 @@ class FlowGauges:
         position, velocity, split = self.ranks.near(state, is_near)
         fields = np.empty((len(self.points), 5))
         fluid = position[:split], velocity[:split]
-        near = near_rows(self.points, position[:split], self.reach)
-        fit_fields(self.points, *near, *fluid, self.constants, fields)
+        near_lists = near_rows(self.points, position[:split], self.reach)
+        fit_fields(self.points, *near_lists, *fluid, self.constants, fields)
         return fields[:, :3].copy()
 
     def _discharge(self, state: State) -> Array:
@@ -62,11 +62,11 @@ class FlowGauges:
         flow = self.constants.mass * self.params.slab_thickness * state.velocity_pressure[rows, 0]
         columns = []
         for section in self.sections:
-            away = x - section
+            distance = x - section
             if "x" in self.params.boundary.periodic and self.params.boundary.tank is not None:
                 length = self.params.boundary.tank[1][0] - self.params.boundary.tank[0][0]
-                away -= length * np.round(away / length)
-            hat = np.maximum(1.0 - np.abs(away) / self.reach, 0.0) / self.reach  # 1/m
+                distance -= length * np.round(distance / length)
+            hat = np.maximum(1.0 - np.abs(distance) / self.reach, 0.0) / self.reach  # 1/m
             columns.append(flow / density * hat)
         return self.ranks.sums(state, columns)
 

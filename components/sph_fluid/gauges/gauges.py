@@ -1,4 +1,4 @@
-"""What gauges read: pressure at points, level above spots, the front, energies.
+"""Readings of gauges: pressure at points, level above spots, the front, energies.
 
 Pressure is what a face would feel per area: Σ V_j W_j of the particles' pressures, each carried on
 to the gauge's height as in still water, over the room Σ V_j W_j that the walls leave. Where fluid
@@ -95,18 +95,18 @@ class Gauges:
 
     def _front(self, state: State, lists: Lists) -> Array:
         axis = "xyz".index(str(self.params.gauges.front_gauge))
-        along = state.position_density[: state.fluid, axis].copy()
+        coordinates = state.position_density[: state.fluid, axis].copy()
         is_held = state.role > 0  # by buffers of inflows and outflows
         if not is_held.all():
-            along[is_held] = -math.inf
-        ahead = -math.inf
+            coordinates[is_held] = -math.inf
+        foremost = -math.inf
         if len(state.reference):
-            ahead = furthest(
-                along, 1.0 / self.levels.lone, state.position_density, lists, self.constants
+            foremost = furthest(
+                coordinates, 1.0 / self.levels.lone, state.position_density, lists, self.constants
             )
         # At the start there are no lists, and no spray either.
-        ahead, furthest_of_all = self.ranks.greatest(ahead, float(along.max()))
-        front = ahead if math.isfinite(ahead) else furthest_of_all
+        foremost, furthest_of_all = self.ranks.greatest(foremost, float(coordinates.max()))
+        front = foremost if math.isfinite(foremost) else furthest_of_all
         return np.array([front + 0.5 * self.params.spacing])
 
     def _motion(self, state: State) -> Fields:
@@ -133,8 +133,8 @@ def _flow_gauges(
     params: SphFluidParams, symmetry: SymmetryPlanes, ranks: Ranks
 ) -> "FlowGauges | None":
     """Gauges of a flow, if any is switched on."""
-    asked = params.gauges
-    if not (asked.velocity_gauges or asked.discharge_gauges or asked.mass_gauge):
+    gauges = params.gauges
+    if not (gauges.velocity_gauges or gauges.discharge_gauges or gauges.mass_gauge):
         return None
     # Left out of scenes without them.
     from quintet.components.sph_fluid.gauges.flow import FlowGauges

@@ -1,4 +1,4 @@
-"""Height of the surface above spots; see `gauges/gauges.py` for what a level is."""
+"""Height of the surface above spots; `gauges/gauges.py` defines levels."""
 
 import math
 from functools import partial
@@ -41,7 +41,7 @@ class Levels:
         """Look above other spots (m, 2) m."""
         self.spots = spots
         # (k m, 2) m: these, and from where images see what these see in them.
-        self.above = self.symmetry.all_images(spots)
+        self.image_spots = self.symmetry.all_images(spots)
 
     def heights(self, state: State) -> Array:
         """Levels (m,) m."""
@@ -50,17 +50,19 @@ class Levels:
         highest, depth = self.ranks.greatest(float(z.max()), float(-z.min()))
         bottom = -depth - reach
         count = math.ceil((highest + reach - bottom) / rise) + 1
-        share = np.empty((len(self.above), count))
-        position, _, split = self.ranks.near(state, partial(near_places, self.above, self.reach))
-        fill_columns(self.above, bottom, rise, split, position, self.constants, share)
-        whole = share.reshape(-1, len(self.spots), count).sum(axis=0)
-        return np.array([self._surface(row, bottom, rise) for row in whole])
+        share = np.empty((len(self.image_spots), count))
+        position, _, split = self.ranks.near(
+            state, partial(near_places, self.image_spots, self.reach)
+        )
+        fill_columns(self.image_spots, bottom, rise, split, position, self.constants, share)
+        total_share = share.reshape(-1, len(self.spots), count).sum(axis=0)
+        return np.array([self._surface(row, bottom, rise) for row in total_share])
 
     def _surface(self, share: Array, bottom: float, rise: float) -> float:
-        most = min(1.0, float(share.max()))
-        if most <= DROP * self.lone and not self._is_deep(share, rise):
+        largest = min(1.0, float(share.max()))
+        if largest <= DROP * self.lone and not self._is_deep(share, rise):
             return self.floor
-        half = SURFACE * most
+        half = SURFACE * largest
         k = int(np.flatnonzero(share >= half)[-1])  # never the last: there the share is 0
         part = (share[k] - half) / (share[k] - share[k + 1])
         return float(bottom + (k + part) * rise)

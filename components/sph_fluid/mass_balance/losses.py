@@ -113,9 +113,9 @@ def balance(state: State, params: SphFluidParams) -> dict[str, int]:
 
 
 def _passages(params: SphFluidParams) -> list[str]:
-    """What passed each buffer has done."""
-    entered = [f"entered by the inflow {each.face}" for each in params.boundary.inflow]
-    return entered + [f"left by the outflow {each.face}" for each in params.boundary.outflow]
+    """Reasons in the mass balance, one for each buffer."""
+    entered = [f"entered by the inflow {passage.face}" for passage in params.boundary.inflow]
+    return entered + [f"left by the outflow {passage.face}" for passage in params.boundary.outflow]
 
 
 def _lost(state: State, params: SphFluidParams) -> Iterator[tuple[str, int]]:

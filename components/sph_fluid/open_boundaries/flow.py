@@ -56,7 +56,7 @@ class Flow:
         self.inflow, self.outflow = params.boundary.inflow, params.boundary.outflow
         self._gravity = params.gravity
         self.layers = buffer_layers(params.smoothing)
-        self.held: Whole = np.zeros(0, np.int64)  # (k,) rows of particles in buffers
+        self.buffer_rows: Whole = np.zeros(0, np.int64)  # (k,) rows of particles in buffers
 
     def start(self, state: State) -> None:
         """Fill the buffers of inflows; what begins in those of outflows is part of these."""
@@ -113,13 +113,13 @@ class Flow:
         state.returned += int(is_back.sum())
         state.carried += self._energy(state, entering) - self._energy(state, is_back)
         state.role[entering] = 0
-        behind = state.position_density[entering]
-        behind[:, zone.axis] -= zone.inward * zone.length
+        new_rows = state.position_density[entering]
+        new_rows[:, zone.axis] -= zone.inward * zone.length
         take_out(state, is_back)
-        self._enter(state, number, behind[:, :3], behind[:, 3])
+        self._enter(state, number, new_rows[:, :3], new_rows[:, 3])
 
     def _let_out(self, state: State, number: int, zone: Zone) -> None:
-        """Hold fluid that enters an outflow's buffer; remove what has passed its face."""
+        """Hold fluid that enters an outflow's buffer; remove particles that passed its face."""
         points = state.position_density[: state.fluid]
         leaving = (state.role == 0) & zone.holds(points)
         state.passed[number] += int(leaving.sum())
@@ -144,12 +144,14 @@ class Flow:
                 fields = np.zeros((len(rows), 5))  # the fluid gives this buffer nothing
             else:
                 fields = self._before(state, zone, points)
-            near = fields[:, 4] >= NO_FLUID
-            density = np.where(near, fields[:, 3], state.position_density[rows, 3])
+            has_fluid = fields[:, 4] >= NO_FLUID
+            density = np.where(has_fluid, fields[:, 3], state.position_density[rows, 3])
             if number < len(self.inflow):
                 density = self._inflow_density(self.inflow[number], points, density)
             else:
-                self._straighten(state, zone, rows, np.where(near, fields[:, zone.axis], np.nan))
+                self._straighten(
+                    state, zone, rows, np.where(has_fluid, fields[:, zone.axis], np.nan)
+                )
                 outflow = self.outflow[number - len(self.inflow)]
                 density = self._outflow_density(outflow, points, density)
             state.position_density[rows, 3] = density
@@ -175,10 +177,10 @@ class Flow:
         fit_fields(places, *near, position, velocity, self.constants, fields)
         return fields[place_of.ravel()]
 
-    def _straighten(self, state: State, zone: Zone, rows: Whole, along: Array) -> None:
+    def _straighten(self, state: State, zone: Zone, rows: Whole, speed: Array) -> None:
         """Let rows move straight out, as fast as the fluid, or, where that is nan, as they do."""
-        before = state.velocity_pressure[rows, zone.axis]
-        outward = -zone.inward * np.where(np.isnan(along), before, along)
+        own_speed = state.velocity_pressure[rows, zone.axis]
+        outward = -zone.inward * np.where(np.isnan(speed), own_speed, speed)
         state.velocity_pressure[rows, :3] = 0.0
         state.velocity_pressure[rows, zone.axis] = -zone.inward * np.maximum(outward, 0.0)
 
@@ -202,15 +204,15 @@ class Flow:
 
     def resize(self, state: State) -> None:
         """Find the particles of buffers in a state with new lists."""
-        self.held = np.flatnonzero(state.role)
+        self.buffer_rows = np.flatnonzero(state.role)
 
     def hold(self, state: State, rates: Rates) -> None:
         """Let the particles of buffers move as they do, whatever acts on them."""
-        rates.rate[self.held] = 0.0
+        rates.rate[self.buffer_rows] = 0.0
         if len(rates.xsph_velocity):
-            rates.xsph_velocity[self.held] = 0.0
+            rates.xsph_velocity[self.buffer_rows] = 0.0
         if len(state.minus_rho_div_u):
-            state.minus_rho_div_u[self.held] = 0.0
+            state.minus_rho_div_u[self.buffer_rows] = 0.0
 
     def refuse_samples(self, points: Array) -> None:
         """Refuse samples (n, 3) m of bodies in buffers, which would pass through them."""

@@ -47,8 +47,8 @@ def fit_fields(
         moments = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
         moments_of[:] = 0.0
         for image in range(points.shape[1]):
-            at = p * points.shape[1] + image
-            for entry in range(begin[at], begin[at + 1]):
+            point = p * points.shape[1] + image
+            for entry in range(begin[point], begin[point + 1]):
                 j = near[entry]
                 dz = position[j, 2] - points[p, image, 2]
                 dx = position[j, 0] - points[p, image, 0]
@@ -99,5 +99,5 @@ def near_rows(points: Array, position: Array, reach: float) -> tuple[Whole, Whol
     tree = cKDTree(position[:, :3])
     # A little further: the kernel decides which ones are within reach.
     rows = tree.query_ball_point(points.reshape(-1, 3), (1.0 + 1e-9) * reach, return_sorted=True)
-    begin = np.concatenate([[0], np.cumsum([len(each) for each in rows])]).astype(np.int64)
+    begin = np.concatenate([[0], np.cumsum([len(numbers) for numbers in rows])]).astype(np.int64)
     return begin, np.concatenate([np.zeros(0, np.int64), *rows]).astype(np.int64)

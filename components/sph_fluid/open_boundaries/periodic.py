@@ -36,7 +36,7 @@ class Shift(NamedTuple):
     """Images of some rows, a period away."""
 
     axis: int
-    by: float  # m
+    distance: float  # m
     origin: Whole  # (k,) rows that have images
     images: slice  # where these stand
 
@@ -76,24 +76,27 @@ class PeriodicImages:
         )
 
     def _find(self, points: Array, reach: float) -> Array:
-        """Find what has images, nearer to a face than `reach` [m]; points (n + images, 3) m."""
+        """Find rows with images, nearer to a face than `reach` [m]; points (n + images, 3) m."""
         self._shifts = []
         for axis, low, length in self.periods:
-            along, first = points[:, axis], len(points)
-            ends = [(along < low + reach, length), (along >= low + length - reach, -length)]
-            for is_near, by in ends:
+            coordinates, first = points[:, axis], len(points)
+            ends = [
+                (coordinates < low + reach, length),
+                (coordinates >= low + length - reach, -length),
+            ]
+            for is_near, distance in ends:
                 origin = np.flatnonzero(is_near)
-                shift = Shift(axis, by, origin, slice(first, first + len(origin)))
+                shift = Shift(axis, distance, origin, slice(first, first + len(origin)))
                 first += len(origin)
                 self._shifts.append(shift)
-                points = np.concatenate([points, _shifted(points[origin], axis, by)])
+                points = np.concatenate([points, _shifted(points[origin], axis, distance)])
         return points
 
     def write_images(self, state: State) -> None:
         """Write the images of all particles as they are."""
-        for axis, by, origin, images in self._shifts:
+        for axis, distance, origin, images in self._shifts:
             state.position_density[images] = state.position_density[origin]
-            state.position_density[images, axis] += by
+            state.position_density[images, axis] += distance
             state.velocity_pressure[images] = state.velocity_pressure[origin]
 
     def write_vectors(self, vectors: Array, rows: int) -> None:
@@ -111,10 +114,10 @@ class PeriodicImages:
     def wrap(self, state: State) -> None:
         """Bring fluid that passed a face back by a period, before lists are made."""
         for axis, low, length in self.periods:
-            along = state.position_density[: state.fluid, axis]
-            whole = np.floor((along - low) / length)
-            along -= length * whole
-            state.crossings[axis] += int(whole.sum())
+            coordinates = state.position_density[: state.fluid, axis]
+            period_count = np.floor((coordinates - low) / length)
+            coordinates -= length * period_count
+            state.crossings[axis] += int(period_count.sum())
 
     def wrapped_samples(self, fields: Fields) -> Fields:
         """Samples of bodies where they are in the tank, with their mirror points."""
@@ -123,10 +126,10 @@ class PeriodicImages:
         for name in places:
             wrapped[name] = np.array(fields[name])
         for axis, low, length in self.periods:
-            along = fields["surface.position"][:, axis]
-            by = length * np.floor((along - low) / length)
+            coordinates = fields["surface.position"][:, axis]
+            distance = length * np.floor((coordinates - low) / length)
             for name in places:
-                wrapped[name][:, axis] -= by
+                wrapped[name][:, axis] -= distance
         return wrapped
 
     def require_before(self, samples: Array) -> None:
@@ -136,14 +139,14 @@ class PeriodicImages:
         """Points (m, 2 or 3) m, then these a period away along each axis, and at edges."""
         for axis, _, length in self.periods:
             if axis < points.shape[1]:
-                sides = [_shifted(points, axis, by) for by in (length, -length)]
+                sides = [_shifted(points, axis, distance) for distance in (length, -length)]
                 points = np.concatenate([points, *sides])
         return points
 
 
-def _shifted(points: Array, axis: int, by: float) -> Array:
+def _shifted(points: Array, axis: int, distance: float) -> Array:
     images = points.copy()
-    images[:, axis] += by
+    images[:, axis] += distance
     return images
 
 

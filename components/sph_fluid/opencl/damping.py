@@ -19,7 +19,7 @@ class DeviceDamping:
     def apply(self, state: State, dt: float) -> None:
         """Damp velocities at the end of a step [s]."""
         rows = self.rows
-        taken = DeviceArray.of(rows.queue, np.zeros(rows.split))
+        speed2_loss = DeviceArray.of(rows.queue, np.zeros(rows.split))
         for zone in self.zones.zones:
             low, high = np.full(4, -np.inf), np.full(4, np.inf)
             for axis in self.zones.axes:
@@ -28,6 +28,6 @@ class DeviceDamping:
             numbers = (*side, np.float64(zone.rate), np.float64(dt))
             run(
                 rows.queue, self._damp, rows.split, np.int32(rows.split), low, high, *numbers,
-                rows.position, rows.velocity, taken, rows.extremes,
+                rows.position, rows.velocity, speed2_loss, rows.extremes,
             )  # fmt: skip
-        self.zones.count_work(state, taken.get())
+        self.zones.count_work(state, speed2_loss.get())

@@ -70,11 +70,13 @@ class DeviceFluid(Component):
             (host.symmetry, NoSymmetry),
             (host.open_boundaries, NoOpenBoundaries), (host.all_ranks, OneRank),
         )  # fmt: skip
-        others = [type(part).__name__ for part, expected in pairs if type(part) is not expected]
-        if others:
+        other_parts = [
+            type(part).__name__ for part, expected in pairs if type(part) is not expected
+        ]
+        if other_parts:
             raise SceneError(
                 f"on device {device}, a fluid must have no parts that the processor alone "
-                f'computes; found {", ".join(others)}. Set device = "cpu".'
+                f'computes; found {", ".join(other_parts)}. Set device = "cpu".'
             )
 
     def describe(self) -> Fields:

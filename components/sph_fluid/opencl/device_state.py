@@ -103,12 +103,12 @@ class DeviceState:
 
     def place(self, state: State, row: Whole) -> None:
         """Put the samples, which have rows (samples,) in a host's state, where that has them."""
-        placed = np.zeros((self.samples, 3, 3))
-        placed[:, 0] = state.position_density[row, :3]
-        placed[:, 1] = state.velocity_pressure[row, :3]
+        sample_rows = np.zeros((self.samples, 3, 3))
+        sample_rows[:, 0] = state.position_density[row, :3]
+        sample_rows[:, 1] = state.velocity_pressure[row, :3]
         if self.mirrored:
-            placed[:, 2] = state.mirror_point[row - self.split]
-        self._placed.put(placed.reshape(-1, 9))
+            sample_rows[:, 2] = state.mirror_point[row - self.split]
+        self._placed.put(sample_rows.reshape(-1, 9))
         run(
             self.queue, self._place, self.samples, np.int32(self.samples), np.int32(self.split),
             self.row, self._placed, self.position, self.velocity, self.mirror,
@@ -120,9 +120,9 @@ class DeviceState:
             self.queue, self._survey, self.split, self.position, np.int32(self.split),
             *self._walls, self._most, self._least,
         )  # fmt: skip
-        most = self.cells.greatest(self._most, self.split)
+        greatest = self.cells.greatest(self._most, self.split)
         least = self.cells.greatest(self._least, self.split)
-        return -least[:3], most[:3], float(most[3]), bool(least[3] > 0.0)
+        return -least[:3], greatest[:3], float(greatest[3]), bool(least[3] > 0.0)
 
     def sort(self, low: np.ndarray, high: np.ndarray, state: State) -> None:
         """Bring near rows together and list neighbours; nothing may be outside of the tank.
@@ -131,15 +131,15 @@ class DeviceState:
         then has them in the order of the device.
         """
         grid = grid_between(low, high, self.reach)
-        split, others = self.split, self.count - self.split
+        split, boundary_count = self.split, self.count - self.split
         fluid_key = self.cells.sorted_keys(self.position, 0, split, grid)
-        boundary_key = self.cells.sorted_keys(self.position, split, others, grid)
+        boundary_key = self.cells.sorted_keys(self.position, split, boundary_count, grid)
         for name in (*OF_ALL, *OF_FLUID):
             self._take_rows(name, fluid_key, split, 0, 0)
         for name in OF_ALL:
-            self._take_rows(name, boundary_key, others, split, 0)
+            self._take_rows(name, boundary_key, boundary_count, split, 0)
         for name in OF_BOUNDARY:
-            self._take_rows(name, boundary_key, others, 0, split)
+            self._take_rows(name, boundary_key, boundary_count, 0, split)
         self.arrays, self._spare = self._spare, self.arrays
         rows = self.reference.shape[0]
         run(
@@ -167,29 +167,35 @@ class DeviceState:
         grid = grid_between(points.min(axis=0), points.max(axis=0), self.reach)
         rows = np.zeros((self.count, 4))
         rows[:, :3] = state.reference[: self.count]
-        noted = DeviceArray.of(self.queue, rows)
-        split, others = self.split, self.count - self.split
-        fluid_key = self.cells.sorted_keys(noted, 0, split, grid)
-        boundary_key = self.cells.sorted_keys(noted, split, others, grid)
-        self._list(noted, grid, fluid_key, boundary_key)
+        position = DeviceArray.of(self.queue, rows)
+        split, boundary_count = self.split, self.count - self.split
+        fluid_key = self.cells.sorted_keys(position, 0, split, grid)
+        boundary_key = self.cells.sorted_keys(position, split, boundary_count, grid)
+        self._list(position, grid, fluid_key, boundary_key)
 
     def _list(
         self, position: DeviceArray, grid: Grid, fluid_key: DeviceArray, boundary_key: DeviceArray
     ) -> None:
-        split, others = self.split, self.count - self.split
+        split, boundary_count = self.split, self.count - self.split
         starts = (
             self.cells.starts(fluid_key, 0, split, grid),
-            self.cells.starts(boundary_key, split, others, grid),
+            self.cells.starts(boundary_key, split, boundary_count, grid),
         )
-        look = None
+        query_points = None
         if self.mirrored:
-            look = DeviceArray(self.queue, (others + self.samples, 3))
-            numbers = map(np.int32, (self.count, others, look.shape[0]))
+            query_points = DeviceArray(self.queue, (boundary_count + self.samples, 3))
+            numbers = map(np.int32, (self.count, boundary_count, query_points.shape[0]))
             run(
-                self.queue, self._look_from, look.shape[0], *numbers, self.row, self.reference, look
+                self.queue,
+                self._look_from,
+                query_points.shape[0],
+                *numbers,
+                self.row,
+                self.reference,
+                query_points,
             )
         self.lists: NearLists = self.cells.lists(
-            position, look, split, self.count, grid, starts, self.reach, self.extremes
+            position, query_points, split, self.count, grid, starts, self.reach, self.extremes
         )
 
     @property
@@ -203,5 +209,7 @@ class DeviceState:
 
     def lengths(self) -> Lists:
         """How many neighbours each row has, as lists of the host without the neighbours."""
-        middle, end = (each.get().astype(np.int64) for each in (self.lists.middle, self.lists.end))
+        middle, end = (
+            array.get().astype(np.int64) for array in (self.lists.middle, self.lists.end)
+        )
         return Lists(np.zeros(len(end), np.int64), middle, end, np.zeros(0, np.int32))

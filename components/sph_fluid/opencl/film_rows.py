@@ -41,7 +41,7 @@ class DeviceFilmRows:
         self._share = DeviceArray(rows.queue, (len(films.row),))
 
     def now(self, state: State) -> tuple[Array, Array]:
-        """What each film (m,) lies between now, as of `FilmRows`."""
+        """Both sides of each film (m,) now, as of `FilmRows`."""
         rows, count = self._rows, self._side.shape[0]
         run(
             rows.queue, self._film_sides, count, np.int32(count), self._needed,
@@ -53,11 +53,12 @@ class DeviceFilmRows:
 
     def fluid_share(self, state: State, foot: Array, lists: Lists, constants: Constants) -> Array:
         """Σ V W (m,) of the fluid around the feet (m, 3) m of all films."""
-        rows, near, count = self._rows, self._rows.lists, len(foot)
+        rows, device_lists, count = self._rows, self._rows.lists, len(foot)
         self._foot.put(foot)
         run(
             rows.queue, self._share_kernel, count, np.int32(count), self._face,
-            np.int32(rows.split), self._foot, rows.position, near.near, near.end,
-            near.row_stride, near.item_stride, bytes_of(constants, np.float64), self._share,
+            np.int32(rows.split), self._foot, rows.position, device_lists.near, device_lists.end,
+            device_lists.row_stride, device_lists.item_stride, bytes_of(constants, np.float64),
+            self._share,
         )  # fmt: skip
         return np.asarray(self._share.get())

@@ -75,7 +75,7 @@ class Passes:
     def _structs_of(self, law: PairLaw) -> tuple[Any, ...]:
         """Numbers of a pair law as structs: constants, terms of the fluid and the boundary."""
         terms = (law.constants, law.fluid, law.boundary)
-        return tuple(bytes_of(each, self._real) for each in terms)
+        return tuple(bytes_of(term, self._real) for term in terms)
 
     def resize(self) -> None:
         """Make room for a state that was copied to the device."""

@@ -42,9 +42,9 @@ def limits(params: SphFluidParams) -> dict[str, tuple[object, bool, str, str]]:
         f"boundary.{name}": (len(getattr(edge, name)), bool(getattr(edge, name)), "empty")
         for name in ("symmetry", "periodic", "inflow", "outflow")
     }
-    changed = {
+    choices = {
         "boundary.method": (edge.method, edge.method == "potential", "mdbc or dbc"),
     }
     return {key: (*limit, "Remove them") for key, limit in lists.items()} | {
-        key: (*limit, "Change it") for key, limit in changed.items()
+        key: (*limit, "Change it") for key, limit in choices.items()
     }

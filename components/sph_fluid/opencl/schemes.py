@@ -23,8 +23,10 @@ class Scheme(Protocol):
 
 def scheme(params: SphFluidParams, kernels: Any, rows: DeviceState, passes: Passes) -> Scheme:
     """Scheme that a scene asks for; kernels are those of `steps.cl`."""
-    kind = DevicePositionVerlet if params.integration == "symplectic" else DeviceExtrapolated
-    return kind(params, kernels, rows, passes)
+    scheme_class = (
+        DevicePositionVerlet if params.integration == "symplectic" else DeviceExtrapolated
+    )
+    return scheme_class(params, kernels, rows, passes)
 
 
 class DeviceExtrapolated:

@@ -1,4 +1,4 @@
-"""Passes over pairs of particles: what they write, and what they are given."""
+"""Passes over pairs of particles: their arguments and their results."""
 
 import math
 
@@ -24,7 +24,7 @@ from quintet.components.sph_fluid.ranks.method import Ranks
 from quintet.components.sph_fluid.setup.mass import EVEN
 from quintet.components.sph_fluid.state import Array, State
 
-UNEVEN = 0.05  # of a particle's volume: what a particle of the walls may differ by
+UNEVEN = 0.05  # of a particle's volume: by so much a wall particle may differ
 
 
 class Interaction:
@@ -51,7 +51,7 @@ class Interaction:
         self.law = self.precision.law(pair_law(self.params, self.boundary.contact, own_volume))
 
     def resize(self, state: State) -> None:
-        """Make room for what is written of a state with new lists."""
+        """Make room for the results of a state with new lists."""
         self.volume = relative_volume(self.samples, state, self.params)
         if len(self.volume):
             self.symmetry.write_values(self.volume, state.particles)
@@ -66,17 +66,17 @@ class Interaction:
         """Write accelerations and rates of density, of the state as it is."""
         boundary = self.precision.boundary(self._boundary_rows(state, lists, team))
         particles = self.precision.particles(state, team)
-        self.given = (particles, boundary, lists, self.frame.law(self.law))
+        self.pair_arguments = (particles, boundary, lists, self.frame.law(self.law))
         rates = self.rates._replace(minus_rho_div_u=state.minus_rho_div_u)
         rows = self.boundary.rows_with_density_rate(state)
-        arguments = (state.fluid, *self.given, self.params.gravity, rates)
+        arguments = (state.fluid, *self.pair_arguments, self.params.gravity, rates)
         extremes = team.run(pair_rates, rows, *arguments)
         largest = math.sqrt(max(greatest for greatest, _ in extremes))
         state.largest_acceleration = self.frame.accelerate(state, rates.rate, largest, team)
         state.largest_approach = max(fastest for _, fastest in extremes)
 
     def _boundary_rows(self, state: State, lists: Lists, team: Team) -> BoundaryRows:
-        """What boundary rows have beside particles, as the state is."""
+        """Velocities, volumes and mask of boundary rows in the present state."""
         velocity: Array = np.zeros((0, 4))
         if self.params.viscosity.kinematic > 0.0:
             velocity = self.boundary.apparent_velocity(state, lists, team)
@@ -99,7 +99,7 @@ class Interaction:
         row = self.samples.row
         if len(row):
             rows = (self.samples.number, row, self.samples.listed)
-            team.run(sample_forces, len(row), *rows, *self.given, state.force)
+            team.run(sample_forces, len(row), *rows, *self.pair_arguments, state.force)
 
     def move_with_neighbours(self, state: State, dt: float, team: Team) -> None:
         """XSPH: move with the neighbours' mean velocity."""

@@ -13,7 +13,7 @@ def refuse_what_needs_one_rank(params: SphFluidParams, ranks: int) -> None:
         With the key, and what to do.
     """
     edge = params.boundary
-    wrong = {
+    limits = {
         "boundary.method": (edge.method, edge.method == "potential", "mdbc or dbc"),
         "boundary.periodic": (edge.periodic, bool(edge.periodic), "empty"),
         "boundary.inflow": (len(edge.inflow), bool(edge.inflow), "empty"),
@@ -24,7 +24,7 @@ def refuse_what_needs_one_rank(params: SphFluidParams, ranks: int) -> None:
             "false",
         ),
     }
-    for key, (value, is_wrong, right) in wrong.items():
+    for key, (value, is_wrong, right) in limits.items():
         if is_wrong:
             raise SceneError(
                 f"{key} must be {right} of a fluid on {ranks} ranks; found {value}. Change it, or "

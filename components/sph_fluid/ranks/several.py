@@ -81,12 +81,12 @@ class SeveralRanks:
         fluid, boundary = fluid_columns(state), boundary_columns(state, self._mirrored)
         is_lost = note_exits(state, walls)
         inside = np.flatnonzero(~is_lost)
-        (left,) = self.count(len(inside))
-        refuse_none(left)
-        if left < self._fluid:
+        (count,) = self.count(len(inside))
+        refuse_none(count)
+        if count < self._fluid:
             first = np.concatenate(share(self._communicator, first_of(state, is_lost).ravel()))
             book(state, self.count(*lost_by_face(state, is_lost)), first.reshape(-1, 5))
-        self._fluid = left
+        self._fluid = count
         keys = self._keys.fluid[inside]
         fluid = taken(fluid, inside)
         grid = grid_of_all(self._communicator, fluid["position_density"], reach)
@@ -98,10 +98,10 @@ class SeveralRanks:
         place = self._order.sort(grid)
         looking = boundary["mirror_point" if self._mirrored else "position_density"]
         owner = owners(cuts, cells_around(looking, grid))
-        self._keys.boundary, (self._number, *others) = migrate(
+        self._keys.boundary, (self._number, *boundary_arrays) = migrate(
             self._communicator, owner, place[self._number], (self._number, *boundary.values())
         )
-        put(state, fluid, dict(zip(boundary, others, strict=True)))
+        put(state, fluid, dict(zip(boundary, boundary_arrays, strict=True)))
         state.reference, state.moved = places(state), 0.0
 
     def _share_out(self, state: State) -> None:

@@ -46,26 +46,26 @@ def refuse_misplaced(body: Array, position: Array, slack: float, room: Room) -> 
         By which a sample may lie inside what a body must not overlap.
     room : Room
     """
-    wrong: dict[float, str] = {}
+    texts_by_body: dict[float, str] = {}
     for boxes, texts in ((room.water, OUTSIDE_WATER), (room.obstacles, OUTSIDE_OBSTACLES)):
         for number, corners in enumerate(boxes):
             low, high = (np.array(corner) for corner in corners)
             depth = np.minimum(position - low, high - position)[:, room.axes].min(axis=1)
             for k in _deepest(body, depth, slack):
-                wrong.setdefault(
+                texts_by_body.setdefault(
                     body[k],
                     f"{texts[0]}; its sample at {_place(position[k])} is {depth[k]:.3g} m inside "
                     f"box {number} of it, {_extent(low, high, room.axes)}. {texts[1]}",
                 )
     if room.tank is not None:
-        _find_outside(wrong, body, position, slack, room.tank, room)
-    if wrong:
-        mistakes = [f"body {number:g} {text}" for number, text in sorted(wrong.items())]
+        _find_outside(texts_by_body, body, position, slack, room.tank, room)
+    if texts_by_body:
+        mistakes = [f"body {number:g} {text}" for number, text in sorted(texts_by_body.items())]
         raise SceneError(mistakes[:MOST_TOLD])
 
 
 def _find_outside(
-    wrong: dict[float, str],
+    texts_by_body: dict[float, str],
     body: Array,
     position: Array,
     slack: float,
@@ -81,16 +81,16 @@ def _find_outside(
         for axis in ("xyz".index(face[0]),)
     }
     numbers, owner = np.unique(body, return_inverse=True)
-    away = np.zeros(len(numbers), bool)
+    is_outside = np.zeros(len(numbers), bool)
     for face in faces:
         if face not in room.closed:
             nearest = np.full(len(numbers), np.inf)
             np.minimum.at(nearest, owner, beyond[face])
-            away |= nearest >= 0.0
+            is_outside |= nearest >= 0.0
     for face in faces:
         if face in room.closed:
-            for k in _deepest(body, np.where(away[owner], 0.0, beyond[face]), slack):
-                wrong.setdefault(
+            for k in _deepest(body, np.where(is_outside[owner], 0.0, beyond[face]), slack):
+                texts_by_body.setdefault(
                     body[k],
                     f"must begin within the tank, {_extent(low, high, room.axes)}; its sample at "
                     f"{_place(position[k])} is {beyond[face][k]:.3g} m beyond face {face}. "

@@ -1,4 +1,4 @@
-"""What concerns several parameters of a fluid at once; each mistake is one sentence."""
+"""Checks of several parameters of a fluid at once; each mistake is one sentence."""
 
 import math
 from collections.abc import Sequence
@@ -17,10 +17,11 @@ def check_boxes(fluid: Fluid, spacing: float) -> None:
     boxes = named_boxes(fluid)
     for number, (name, box) in enumerate(boxes):
         _check_corners(name, box, spacing)
-        for other, earlier in boxes[:number]:
+        for earlier_name, earlier in boxes[:number]:
             if _overlap(box, earlier, ROUNDING * spacing):
                 raise ValueError(
-                    f"{name} must not overlap {other}; found {box} and {earlier}. Cut one of them."
+                    f"{name} must not overlap {earlier_name}; found {box} and {earlier}. Cut one "
+                    "of them."
                 )
 
 
@@ -77,10 +78,10 @@ def check_obstacles(boundary: Boundary, fluid: Fluid, spacing: float, dimensions
                 f"{name} must be at least {least:g} m across, twice the wall_offset; found "
                 f"{width:g} m. Refine the spacing, or lower wall_offset."
             )
-        for other, water in named_boxes(fluid):
+        for region, water in named_boxes(fluid):
             if _overlap(box, water, tolerance):
                 raise ValueError(
-                    f"{name} must not overlap {other}; found {box} and {water}. Cut the fluid."
+                    f"{name} must not overlap {region}; found {box} and {water}. Cut the fluid."
                 )
 
 
@@ -106,9 +107,9 @@ def check_slab(boxes: Sequence[Bounds], gravity: Vector) -> None:
 
 
 def check_symmetry(
-    boundary: Boundary, dimensions: int, gravity: Vector, apart: float, spacing: float
+    boundary: Boundary, dimensions: int, gravity: Vector, least: float, spacing: float
 ) -> None:
-    """Planes of symmetry are faces of the tank that nothing crosses, `apart` [m] or more."""
+    """Planes of symmetry are faces of the tank that nothing crosses, `least` [m] apart or more."""
     for face in boundary.symmetry:
         axis, name = "xyz".index(face[0]), f"boundary.symmetry: {face}"
         if boundary.tank is None or face in boundary.open_faces:
@@ -127,11 +128,11 @@ def check_symmetry(
                 "gravity, or make the face a wall."
             )
         low, high = boundary.tank[0][axis], boundary.tank[1][axis]
-        both = {f"{face[0]}-", f"{face[0]}+"} <= set(boundary.symmetry)
-        if both and high - low < apart:
+        has_both = {f"{face[0]}-", f"{face[0]}+"} <= set(boundary.symmetry)
+        if has_both and high - low < least:
             # What is behind one plane would be mirrored in the other.
             raise ValueError(
-                f"{name} must be {apart:g} m or more, 3 smoothing lengths, from the opposite "
+                f"{name} must be {least:g} m or more, 3 smoothing lengths, from the opposite "
                 f"plane; found {high - low:g} m. Widen the tank, or refine the spacing."
             )
         for number, box in enumerate(boundary.solids):
@@ -203,9 +204,10 @@ def _overlap(first: Bounds, second: Bounds, tolerance: float) -> bool:
 
 def check_moved(boundary: Boundary) -> None:
     """Fluid does not come, go or repeat in a tank of which something moves."""
-    moved = [name for name in ("motion", "pistons") if getattr(boundary, name)]
-    others = [name for name in ("inflow", "outflow", "periodic") if getattr(boundary, name)]
-    if moved and others:
+    moving_keys = [name for name in ("motion", "pistons") if getattr(boundary, name)]
+    flow_keys = [name for name in ("inflow", "outflow", "periodic") if getattr(boundary, name)]
+    if moving_keys and flow_keys:
         raise ValueError(
-            f"boundary.{moved[0]} is not available with boundary.{others[0]}. Remove one of them."
+            f"boundary.{moving_keys[0]} is not available with boundary.{flow_keys[0]}. Remove one "
+            "of them."
         )

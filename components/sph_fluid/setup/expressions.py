@@ -68,7 +68,7 @@ def _checked(expression: float | str) -> float | str:
 Expression = Annotated[float | str, AfterValidator(_checked)]
 
 
-def values_at(expression: float | str, points: Array, what: str) -> Array:
+def values_at(expression: float | str, points: Array, name: str) -> Array:
     """Values (n,) of an expression at points (n, 3) m; all must be finite."""
     if not isinstance(expression, str):
         return np.full(len(points), float(expression))
@@ -76,12 +76,12 @@ def values_at(expression: float | str, points: Array, what: str) -> Array:
     with np.errstate(all="ignore"):
         values = _value(_parse(expression), places)
         values = np.array(np.broadcast_to(values, len(points)), np.float64)
-    bad = np.flatnonzero(~np.isfinite(values))
-    if len(bad):
-        x, y, z = points[bad[0]].tolist()
+    infinite = np.flatnonzero(~np.isfinite(values))
+    if len(infinite):
+        x, y, z = points[infinite[0]].tolist()
         raise ValueError(
-            f"{what} must be finite in all of the fluid; {expression!r} is {values[bad[0]]} at "
-            f"({x:.4g}, {y:.4g}, {z:.4g}) m. Correct it."
+            f"{name} must be finite in all of the fluid; {expression!r} is {values[infinite[0]]} "
+            f"at ({x:.4g}, {y:.4g}, {z:.4g}) m. Correct it."
         )
     return values
 
@@ -118,7 +118,7 @@ def _check(node: ast.expr, text: str, depth: int) -> None:
 
 
 def _inner(node: ast.expr) -> list[ast.expr] | None:
-    """What a node is computed from; None if it is not known."""
+    """Operands of a node; None if the node is not known."""
     match node:
         case ast.Constant(value=int() | float() as value) if not isinstance(value, bool):
             return []

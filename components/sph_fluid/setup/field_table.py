@@ -37,19 +37,19 @@ class FieldTable:
             return values
         lower, share = [], []
         for axis, place in self.places.items():
-            along = np.clip(points[:, AXES.index(axis)], place[0], place[-1])
-            row = np.clip(np.searchsorted(place, along) - 1, 0, max(len(place) - 2, 0))
+            coordinate = np.clip(points[:, AXES.index(axis)], place[0], place[-1])
+            row = np.clip(np.searchsorted(place, coordinate) - 1, 0, max(len(place) - 2, 0))
             step = place[np.minimum(row + 1, len(place) - 1)] - place[row]
             share.append(
-                np.divide(along - place[row], step, out=np.zeros(len(row)), where=step > 0)
+                np.divide(coordinate - place[row], step, out=np.zeros(len(row)), where=step > 0)
             )
             lower.append(row)
         for ends in itertools.product((0, 1), repeat=len(lower)):
-            weight, at = np.ones(len(points)), []
+            weight, index = np.ones(len(points)), []
             for end, row, part, place in zip(ends, lower, share, self.places.values(), strict=True):
                 weight = weight * (part if end else 1.0 - part)
-                at.append(np.minimum(row + end, len(place) - 1))
-            values += weight * self.values[name][tuple(at)]
+                index.append(np.minimum(row + end, len(place) - 1))
+            values += weight * self.values[name][tuple(index)]
         return values
 
 
@@ -69,12 +69,12 @@ def read_table(file: str) -> FieldTable:
             f"{len(numbers)} rows. Correct it."
         )
     column = dict(zip(columns, numbers.T, strict=True))
-    places, at = {}, []
+    places, indices = {}, []
     for axis in axes:
         places[axis], row = np.unique(column[axis], return_inverse=True)
-        at.append(row.reshape(-1))
+        indices.append(row.reshape(-1))
     shape = tuple(len(axis) for axis in places.values())
-    number = np.ravel_multi_index(tuple(at), shape)
+    number = np.ravel_multi_index(tuple(indices), shape)
     if len(numbers) != np.prod(shape) or len(np.unique(number)) != len(numbers):
         raise ValueError(
             f"table {name} must have a row for each point of a rectangular grid, here "

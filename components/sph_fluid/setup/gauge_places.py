@@ -1,4 +1,4 @@
-"""What is measured in a fluid: gauges lie where fluid can be, or they would measure nothing."""
+"""Gauges of a fluid: they lie where fluid can be, or they would measure nothing."""
 
 from collections.abc import Iterator
 from typing import ClassVar
@@ -54,8 +54,8 @@ class Gauges:
         """
         tolerance = ROUNDING * spacing
         for number, section in enumerate(self.discharge_gauges):
-            where = f"gauges.discharge_gauges[{number}]"
-            _require_whole_section(where, section, boundary, reach - tolerance)
+            section_name = f"gauges.discharge_gauges[{number}]"
+            _require_whole_section(section_name, section, boundary, reach - tolerance)
         for name, point in self._points():
             require_within_walls(f"gauges.{name}", point, boundary, tolerance, dimensions)
             for number, (lowest, highest) in enumerate(boundary.solids):
@@ -90,7 +90,7 @@ class Gauges:
 
 
 def require_within_walls(
-    where: str, point: tuple[float, ...], boundary: Boundary, tolerance: float, dimensions: int
+    name: str, point: tuple[float, ...], boundary: Boundary, tolerance: float, dimensions: int
 ) -> None:
     """Refuse a gauge at x, y and, if it has one, z [m], that lies beyond a closed wall."""
     for axis, value in enumerate(point) if boundary.tank else ():
@@ -102,20 +102,20 @@ def require_within_walls(
         below, above = value < low - tolerance, value > high + tolerance
         if (below and closed[0]) or (above and closed[1]):
             raise ValueError(
-                f"{where} must be inside the walls along {'xyz'[axis]}, {low:g} to {high:g} m; "
+                f"{name} must be inside the walls along {'xyz'[axis]}, {low:g} to {high:g} m; "
                 f"found {value:g} m, where there is no fluid. Move the gauge."
             )
 
 
-def _require_whole_section(where: str, section: float, boundary: Boundary, reach: float) -> None:
+def _require_whole_section(name: str, section: float, boundary: Boundary, reach: float) -> None:
     """Refuse a section x [m] whose neighbourhood, `reach` [m] to both sides, leaves the tank.
 
     Fluid that falls over an open face is on both sides of it: such a face is no limit.
     """
     if boundary.tank is None:
         return
-    passages = [each.face for each in boundary.inflow]
-    passages += [each.face for each in boundary.outflow]
+    passages = [passage.face for passage in boundary.inflow]
+    passages += [passage.face for passage in boundary.outflow]
     low, high = boundary.tank[0][0], boundary.tank[1][0]
     is_periodic = "x" in boundary.periodic
     depth = {"x-": section - low, "x+": high - section}  # m, inside each face
@@ -124,7 +124,7 @@ def _require_whole_section(where: str, section: float, boundary: Boundary, reach
         least = 0.0 if is_periodic else reach
         if is_limit and inside < least:
             raise ValueError(
-                f"{where} must be inside the tank, {least:.4g} m or more from its face {face}, or "
+                f"{name} must be inside the tank, {least:.4g} m or more from its face {face}, or "
                 f"it misses a part of the flow; found x = {section:g} m in a tank from {low:g} to "
                 f"{high:g} m. Move the section."
             )

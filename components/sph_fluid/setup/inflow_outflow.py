@@ -124,12 +124,12 @@ def check_flow(
     open_faces: tuple[Face, ...], dimensions: int,
 ) -> None:  # fmt: skip
     """Fluid comes and goes through open faces of a tank, each with one rule."""
-    names = [f"boundary.inflow {each.face}" for each in inflow]
-    names += [f"boundary.outflow {each.face}" for each in outflow]
-    seen: set[str] = set()
+    names = [f"boundary.inflow {passage.face}" for passage in inflow]
+    names += [f"boundary.outflow {passage.face}" for passage in outflow]
+    used_faces: set[str] = set()
     passages: list[Inflow | Outflow] = [*inflow, *outflow]
-    for name, each in zip(names, passages, strict=True):
-        face = each.face
+    for name, passage in zip(names, passages, strict=True):
+        face = passage.face
         if tank is None or face not in open_faces:
             raise ValueError(
                 f"{name} must be an open face of the tank; found walls {tank} and open_faces "
@@ -140,16 +140,16 @@ def check_flow(
                 f"{name} must be across x or z in two dimensions, where nothing moves along y. "
                 "Choose another face."
             )
-        if face in seen:
+        if face in used_faces:
             raise ValueError(
                 f"{name} must be the only inflow or outflow of its face; found another. Remove one."
             )
-        seen.add(face)
+        used_faces.add(face)
         low, high = tank[0][2], tank[1][2]
-        if each.level is not None and (face[0] == "z" or not low < each.level <= high):
+        if passage.level is not None and (face[0] == "z" or not low < passage.level <= high):
             raise ValueError(
                 f"{name}: level must be a height in the tank, above {low:g} and up to {high:g} m, "
-                f"of an upright face; found {each.level:g} m. Correct it, or remove it."
+                f"of an upright face; found {passage.level:g} m. Correct it, or remove it."
             )
     for entrance in inflow:
         entrance.check()

@@ -1,4 +1,4 @@
-"""What concerns boundaries from files; imported only by a scene that has some."""
+"""Checks of boundaries from files; imported only by a scene that has some."""
 
 from collections.abc import Iterable, Sequence
 from pathlib import Path
@@ -47,18 +47,18 @@ def check_meshes(
         name = f"boundary.meshes[{number}]"
         try:
             layers = filling.of_moved if mesh in boundary.moved_meshes else filling
-            behind = surface(mesh, layers)
-            _check_thickness(name, behind)
+            mesh_surface = surface(mesh, layers)
+            _check_thickness(name, mesh_surface)
             points, _ = mesh_points(mesh, layers)
         except ValueError as error:
             text = str(error)
             raise ValueError(text if text.startswith(name) else f"{name}: {text}") from error
         for k, places in enumerate(regions):
-            _check_fluid(name, f"fluid[{k}]", behind, places)
-        _check_gauges(name, behind, gauges)
+            _check_fluid(name, f"fluid[{k}]", mesh_surface, places)
+        _check_gauges(name, mesh_surface, gauges)
         _check_obstacles(name, points, boundary.solids, filling.spacing)
-        for other, earlier in filled:
-            _check_apart(name, points, other, earlier, filling.spacing)
+        for earlier_name, earlier in filled:
+            _check_apart(name, points, earlier_name, earlier, filling.spacing)
         filled.append((name, points))
 
 
@@ -78,55 +78,55 @@ def region_points(fluid: Fluid, spacing: float) -> list[Array]:
 
 
 def _check_options(boundary: Boundary, dimensions: int) -> None:
-    wrong = ""
+    conflict = ""
     if dimensions == 2:
-        wrong = "dimensions 2. Set dimensions to 3, or use obstacles"
+        conflict = "dimensions 2. Set dimensions to 3, or use obstacles"
     elif boundary.method == "potential":
-        wrong = "boundary.method potential. Use mdbc or dbc"
+        conflict = "boundary.method potential. Use mdbc or dbc"
     elif boundary.symmetry:
-        wrong = f"boundary.symmetry {list(boundary.symmetry)}. Leave one of the two out"
+        conflict = f"boundary.symmetry {list(boundary.symmetry)}. Leave one of the two out"
     elif boundary.lubrication_films is True:
         raise ValueError("lubrication_films is not available with meshes. Remove one of them.")
-    if wrong:
+    if conflict:
         raise ValueError(
             "boundary.meshes are walls in three dimensions, without planes of symmetry or the "
-            f"contact potential; found {wrong}."
+            f"contact potential; found {conflict}."
         )
 
 
-def _check_thickness(name: str, behind: Surface) -> None:
-    least, where = behind.thinnest()
-    if least < (THIN - 1e-6) * behind.spacing:
+def _check_thickness(name: str, mesh_surface: Surface) -> None:
+    least, place = mesh_surface.thinnest()
+    if least < (THIN - 1e-6) * mesh_surface.spacing:
         raise ValueError(
-            f"{name} must have {THIN:g} spacings, {THIN * behind.spacing:g} m, or more of solid "
-            f"behind each face, or the surface overlaps itself; found {least:.3g} m behind "
-            f"{np.array2string(where, precision=4)} m. Refine the spacing, thicken it, or choose "
+            f"{name} must have {THIN:g} spacings, {THIN * mesh_surface.spacing:g} m, or more of "
+            f"solid behind each face, or the surface overlaps itself; found {least:.3g} m behind "
+            f"{np.array2string(place, precision=4)} m. Refine the spacing, thicken it, or choose "
             "the other fluid_side."
         )
 
 
-def _check_fluid(name: str, region: str, behind: Surface, places: Array) -> None:
-    below, _ = behind.depths(places)
-    wrong = np.flatnonzero(below > -APART * behind.spacing)
-    if len(wrong):
-        deepest = float(below.max())
-        where = np.array2string(places[np.argmax(below)], precision=4)
+def _check_fluid(name: str, region: str, mesh_surface: Surface, places: Array) -> None:
+    depth, _ = mesh_surface.depths(places)
+    rows = np.flatnonzero(depth > -APART * mesh_surface.spacing)
+    if len(rows):
+        deepest = float(depth.max())
+        point = np.array2string(places[np.argmax(depth)], precision=4)
         place = f"{deepest:.3g} m behind" if deepest > 0.0 else f"{-deepest:.3g} m before"
         place = "far behind" if deepest >= FAR else place
         raise ValueError(
-            f"{name} must have all fluid {APART:g} spacings, {APART * behind.spacing:g} m, or more "
-            f"before it; found {len(wrong)} of {len(places)} particles of {region} behind or "
-            f"nearer, one {place}, at {where} m. Cut the fluid, or choose the other fluid_side."
+            f"{name} must have all fluid {APART:g} spacings, {APART * mesh_surface.spacing:g} m, "
+            f"or more before it; found {len(rows)} of {len(places)} particles of {region} behind "
+            f"or nearer, one {place}, at {point} m. Cut the fluid, or choose the other fluid_side."
         )
 
 
-def _check_gauges(name: str, behind: Surface, gauges: Sequence[tuple[str, Vector]]) -> None:
+def _check_gauges(name: str, mesh_surface: Surface, gauges: Sequence[tuple[str, Vector]]) -> None:
     if not gauges:
         return
-    below, _ = behind.depths(np.array([place for _, place in gauges]))
-    wrong = np.flatnonzero(below > 1e-6 * behind.spacing)
-    if len(wrong):
-        gauge, place = gauges[wrong[0]]
+    depth, _ = mesh_surface.depths(np.array([place for _, place in gauges]))
+    rows = np.flatnonzero(depth > 1e-6 * mesh_surface.spacing)
+    if len(rows):
+        gauge, place = gauges[rows[0]]
         raise ValueError(
             f"gauges.{gauge} must not be behind {name}; found {tuple(place)} m. Move the gauge "
             "into the fluid."
@@ -134,9 +134,9 @@ def _check_gauges(name: str, behind: Surface, gauges: Sequence[tuple[str, Vector
 
 
 def _check_obstacles(name: str, points: Array, boxes: Sequence[Bounds], spacing: float) -> None:
-    little = 1e-6 * spacing
+    tolerance = 1e-6 * spacing
     for number, (low, high) in enumerate(boxes):
-        inside = (points > np.array(low) + little) & (points < np.array(high) - little)
+        inside = (points > np.array(low) + tolerance) & (points < np.array(high) - tolerance)
         if count := int(inside.all(axis=1).sum()):
             raise ValueError(
                 f"{name} must not overlap boundary.obstacles[{number}]; {count} of its "
@@ -145,15 +145,17 @@ def _check_obstacles(name: str, points: Array, boxes: Sequence[Bounds], spacing:
             )
 
 
-def _check_apart(name: str, points: Array, other: str, earlier: Array, spacing: float) -> None:
+def _check_apart(
+    name: str, points: Array, earlier_name: str, earlier: Array, spacing: float
+) -> None:
     # Left out of scenes with one surface.
     from scipy.spatial import cKDTree
 
     distance, _ = cKDTree(earlier).query(points, distance_upper_bound=NEAR * spacing)
     if count := int(np.isfinite(distance).sum()):
         raise ValueError(
-            f"{name} must not overlap {other}; {count} of its {len(points)} wall particles stand "
-            f"nearer than {NEAR:g} spacings to others of it. Unite both in one file."
+            f"{name} must not overlap {earlier_name}; {count} of its {len(points)} wall particles "
+            f"stand nearer than {NEAR:g} spacings to others of it. Unite both in one file."
         )
 
 
@@ -162,14 +164,14 @@ def mesh_notes(boundary: Boundary, filling: Filling) -> tuple[str, ...]:
     notes = []
     for number, mesh in enumerate(boundary.meshes):
         layers = filling.of_moved if mesh in boundary.moved_meshes else filling
-        whole = surface(mesh, layers).whole
-        x, y, z = np.ptp(whole.corner, axis=(0, 1)).tolist()
+        triangles = surface(mesh, layers).triangles
+        x, y, z = np.ptp(triangles.corner, axis=(0, 1)).tolist()
         points, _ = mesh_points(mesh, layers)
         text = (
-            f"boundary.meshes[{number}], {Path(mesh.path).name}: {len(whole.corner)} triangles, "
-            f"{x:.4g} x {y:.4g} x {z:.4g} m, {len(points)} wall particles"
+            f"boundary.meshes[{number}], {Path(mesh.path).name}: {len(triangles.corner)} "
+            f"triangles, {x:.4g} x {y:.4g} x {z:.4g} m, {len(points)} wall particles"
         )
         if mesh.surface == "open":
-            text += f"; its rims have {whole.rims} edges, and a hole in it would be one"
+            text += f"; its rims have {triangles.rims} edges, and a hole in it would be one"
         notes.append(f"{text}.")
     return tuple(notes)

@@ -34,22 +34,22 @@ def mesh_points(mesh: BoundaryMesh, filling: Filling) -> tuple[Array, Array]:
 
     There are none in the tank's walls, which have their own.
     """
-    behind, spacing = surface(mesh, filling), filling.spacing
-    corner = behind.whole.corner
+    mesh_surface, spacing = surface(mesh, filling), filling.spacing
+    corner = mesh_surface.triangles.corner
     low, high = corner.min(axis=(0, 1)), corner.max(axis=(0, 1))
-    less, depths = (filling.offset - 0.5) * spacing, behind.depths
+    inset, depths = (filling.offset - 0.5) * spacing, mesh_surface.depths
     if mesh.is_solid:
         low, high = _whole_spacings(low, high, spacing)
-        volume = behind.whole.volume
+        volume = mesh_surface.triangles.volume
     else:
-        low, high = _around(low, high, behind.reach, spacing)
-        layers = math.ceil((filling.reach - less) / spacing - SAME)
-        depths = partial(_down_to, behind, less + layers * spacing)
+        low, high = _around(low, high, mesh_surface.reach, spacing)
+        layers = math.ceil((filling.reach - inset) / spacing - SAME)
+        depths = partial(_down_to, mesh_surface, inset + layers * spacing)
         volume = _volume_behind(depths, low, high, spacing)
     body = Body(depths, low, high, volume)
-    (points, _, _, images), _ = fill_closed(body, spacing, filling.reach - less, less)
+    (points, _, _, images), _ = fill_closed(body, spacing, filling.reach - inset, inset)
     if not mesh.is_solid:
-        points, images = _with_gaps_filled(points, images, behind, filling)
+        points, images = _with_gaps_filled(points, images, mesh_surface, filling)
     outside = ~_in_walls(points, filling)
     points, images = points[outside], images[outside]
     order = np.lexsort(np.round(points / (1e-6 * spacing)).T)
@@ -61,27 +61,27 @@ def _in_walls(points: Array, filling: Filling) -> NDArray[np.bool_]:
     if filling.tank is None or filling.around is None:
         return np.zeros(len(points), bool)
     (low, high), (lowest, highest) = np.array(filling.tank), np.array(filling.around)
-    beyond = (points < low) | (points > high)
-    within = (points > lowest) & (points < highest)
-    return np.asarray(beyond.any(axis=1) & within.all(axis=1))
+    is_beyond = (points < low) | (points > high)
+    is_around = (points > lowest) & (points < highest)
+    return np.asarray(is_beyond.any(axis=1) & is_around.all(axis=1))
 
 
 def _with_gaps_filled(
-    points: Array, images: Array, behind: Surface, filling: Filling
+    points: Array, images: Array, mesh_surface: Surface, filling: Filling
 ) -> tuple[Array, Array]:
     """Add particles in gaps of bent layers, through which fluid would leave a tank."""
     spacing, depth = filling.spacing, filling.offset * filling.spacing
     while depth < filling.reach:
-        places = behind.piece - depth * behind.normal[behind.owner]
-        below, normal = behind.depths(places)
-        places = places[np.abs(below - depth) < SAME * spacing]
-        normal = normal[np.abs(below - depth) < SAME * spacing]
+        places = mesh_surface.piece - depth * mesh_surface.normal[mesh_surface.owner]
+        surface_depth, normal = mesh_surface.depths(places)
+        places = places[np.abs(surface_depth - depth) < SAME * spacing]
+        normal = normal[np.abs(surface_depth - depth) < SAME * spacing]
         distance, _ = cKDTree(points).query(places)
         order = np.argsort(-distance, kind="stable")
         added: list[int] = []
         for k in order[distance[order] > GAP * spacing].tolist():
-            apart = np.linalg.norm(places[added] - places[k], axis=1)
-            if apart.min(initial=np.inf) > GAP * spacing:
+            gap = np.linalg.norm(places[added] - places[k], axis=1)
+            if gap.min(initial=np.inf) > GAP * spacing:
                 added.append(k)
         points = np.concatenate([points, places[added]])
         images = np.concatenate([images, places[added] + 2.0 * depth * normal[added]])
@@ -92,8 +92,8 @@ def _with_gaps_filled(
 def _whole_spacings(low: Array, high: Array, spacing: float) -> tuple[Array, Array]:
     """Corners (3,) m of a box, exact along axes on which it is nearly whole spacings long."""
     middle, length = 0.5 * (low + high), high - low
-    whole = spacing * np.round(length / spacing)
-    half = 0.5 * np.where(np.abs(length - whole) < SAME * spacing, whole, length)
+    rounded = spacing * np.round(length / spacing)
+    half = 0.5 * np.where(np.abs(length - rounded) < SAME * spacing, rounded, length)
     return middle - half, middle + half
 
 
@@ -104,9 +104,9 @@ def _around(low: Array, high: Array, reach: float, spacing: float) -> tuple[Arra
     return middle - half, middle + half
 
 
-def _down_to(behind: Surface, deepest: float, points: Array) -> tuple[Array, Array]:
+def _down_to(mesh_surface: Surface, deepest: float, points: Array) -> tuple[Array, Array]:
     """Depths and normals behind a surface, as if what is deeper [m] were before it."""
-    below, normal = behind.depths(points)
+    below, normal = mesh_surface.depths(points)
     return np.where(below < deepest, below, -FAR), normal
 
 

@@ -111,13 +111,13 @@ class Surface:
         reach: float,
         dry: Sequence[tuple[int, float]] = (),
     ) -> None:
-        self.mesh, self.whole = mesh, placed(mesh)
+        self.mesh, self.triangles = mesh, placed(mesh)
         self.spacing, self.reach = spacing, reach + spacing
-        corner, little = self.whole.corner, SAME * spacing
+        corner, tolerance = self.triangles.corner, SAME * spacing
         is_dry = np.zeros(len(corner), bool)
         for axis, place in dry:
-            is_dry |= (np.abs(corner[:, :, axis] - place) < little).all(axis=1)
-        self.corner, self.little = corner[~is_dry], little
+            is_dry |= (np.abs(corner[:, :, axis] - place) < tolerance).all(axis=1)
+        self.corner, self.tolerance = corner[~is_dry], tolerance
         across = np.cross(
             self.corner[:, 1] - self.corner[:, 0], self.corner[:, 2] - self.corner[:, 0]
         )
@@ -126,7 +126,7 @@ class Surface:
         self.normal = across / np.linalg.norm(across, axis=1)[:, None]
         self.piece, self.owner = _pieces(self.corner, PIECE * spacing)
         self.tree = cKDTree(self.piece)
-        self.rim = _rims(self.corner, self.whole.rims, 1e-2 * little)
+        self.rim = _rims(self.corner, self.triangles.rims, 1e-2 * tolerance)
 
     def depths(self, points: Array) -> tuple[Array, Array]:
         """Depths (n,) m of places (n, 3) m, negative before the surface, and normals (n, 3).
@@ -136,11 +136,11 @@ class Surface:
         """
         below, normal = np.empty(len(points)), np.zeros_like(points)
         distance, _ = self.tree.query(points, distance_upper_bound=self.reach + self.spacing)
-        near = np.flatnonzero(np.isfinite(distance))
-        far = np.flatnonzero(~np.isfinite(distance))
-        below[far] = self._far(points[far])
-        for begin in range(0, len(near), CHUNK):
-            rows = near[begin : begin + CHUNK]
+        near_rows = np.flatnonzero(np.isfinite(distance))
+        far_rows = np.flatnonzero(~np.isfinite(distance))
+        below[far_rows] = self._far(points[far_rows])
+        for begin in range(0, len(near_rows), CHUNK):
+            rows = near_rows[begin : begin + CHUNK]
             below[rows], normal[rows] = self._near(points[rows])
         return below, normal
 
@@ -148,11 +148,11 @@ class Surface:
         """`FAR` behind a closed surface, and -`FAR` before it; of an open one always before."""
         if self.mesh.surface == "open":
             return np.full(len(points), -FAR)
-        outwards = self.whole.corner
+        outwards = self.triangles.corner
         if self.mesh.fluid_side == "back":
             outwards = outwards[:, ::-1]
-        within = mesh_files.inside(points, outwards)
-        return np.where(within == (self.mesh.fluid_side == "front"), FAR, -FAR)
+        is_inside = mesh_files.inside(points, outwards)
+        return np.where(is_inside == (self.mesh.fluid_side == "front"), FAR, -FAR)
 
     def _near(self, points: Array) -> tuple[Array, Array]:
         # Scenes without meshes do not import the reader of meshes.
@@ -162,30 +162,32 @@ class Surface:
         _, piece = self.tree.query(points, count)
         owner = self.owner[np.asarray(piece).reshape(len(points), count)]
         owner = np.sort(owner, axis=1)
-        first = np.ones(owner.shape, bool)  # of the pieces of each face
-        first[:, 1:] = owner[:, 1:] != owner[:, :-1]
-        place, _ = np.nonzero(first)
+        is_first = np.ones(owner.shape, bool)  # of the pieces of each face
+        is_first[:, 1:] = owner[:, 1:] != owner[:, :-1]
+        place, _ = np.nonzero(is_first)
         feet = np.full((*owner.shape, 3), np.inf)
-        feet[first] = closest_point(self.corner[owner[first]], points[place])
-        away = points[:, None] - feet
-        distance = np.linalg.norm(away, axis=2)
+        feet[is_first] = closest_point(self.corner[owner[is_first]], points[place])
+        offset = points[:, None] - feet
+        distance = np.linalg.norm(offset, axis=2)
         least = distance.min(axis=1)
-        equal = distance <= least[:, None] + self.little
+        equal = distance <= least[:, None] + self.tolerance
         # Of faces that share the nearest edge the one that is seen least aslant tells the side.
-        ahead = np.zeros(owner.shape)
-        ahead[equal] = (away[equal] * self.normal[owner[equal]]).sum(axis=1)
-        best = np.abs(ahead).argmax(axis=1)
+        projection = np.zeros(owner.shape)
+        projection[equal] = (offset[equal] * self.normal[owner[equal]]).sum(axis=1)
+        column = np.abs(projection).argmax(axis=1)
         row = np.arange(len(points))
-        face, side, to_foot = owner[row, best], ahead[row, best], -away[row, best]
-        on_surface = least < self.little
+        face, side, to_foot = owner[row, column], projection[row, column], -offset[row, column]
+        on_surface = least < self.tolerance
         below = np.where(side < 0.0, least, -least)
         outwards = np.where(side < 0.0, 1.0, -1.0)[:, None] * to_foot
-        normal = outwards / np.maximum(least, self.little)[:, None]
+        normal = outwards / np.maximum(least, self.tolerance)[:, None]
         normal[on_surface] = self.normal[face[on_surface]]
-        apart = np.linalg.norm(away - away[row, best][:, None], axis=2) > 10.0 * self.little
-        for k in np.flatnonzero((equal & apart).any(axis=1) & ~on_surface):
-            normal[k] = _to_all(-away[k][equal[k]]) / least[k] * (1.0 if side[k] < 0.0 else -1.0)
-        if self.whole.rims:
+        is_other_place = (
+            np.linalg.norm(offset - offset[row, column][:, None], axis=2) > 10.0 * self.tolerance
+        )
+        for k in np.flatnonzero((equal & is_other_place).any(axis=1) & ~on_surface):
+            normal[k] = _to_all(-offset[k][equal[k]]) / least[k] * (1.0 if side[k] < 0.0 else -1.0)
+        if self.triangles.rims:
             aslant = np.flatnonzero(np.abs(side) < ALONG * least)
             for candidate in range(count):
                 rows = aslant[equal[aslant, candidate]]
@@ -195,76 +197,76 @@ class Surface:
 
     def _on_rim(self, feet: Array, face: Whole) -> Flags:
         """Whether places (n, 3) m on faces (n,) lie on edges that one triangle alone has."""
-        on = np.zeros(len(feet), bool)
+        is_on_rim = np.zeros(len(feet), bool)
         for edge in range(3):
             begin, end = self.corner[face, edge], self.corner[face, (edge + 1) % 3]
-            along = (end - begin) / np.linalg.norm(end - begin, axis=1)[:, None]
-            aside = np.linalg.norm(np.cross(feet - begin, along), axis=1)
-            on |= self.rim[face, edge] & (aside < 10.0 * self.little)
-        return on
+            direction = (end - begin) / np.linalg.norm(end - begin, axis=1)[:, None]
+            distance = np.linalg.norm(np.cross(feet - begin, direction), axis=1)
+            is_on_rim |= self.rim[face, edge] & (distance < 10.0 * self.tolerance)
+        return is_on_rim
 
     def thinnest(self) -> tuple[float, Array]:
         """Least thickness [m] of what is behind the surface, and where [m]; as rays find it."""
         chosen = np.unique(np.linspace(0, len(self.piece) - 1, RAYS).astype(int))
         start, face = self.piece[chosen], self.owner[chosen]
-        least, where = np.inf, start[0]
-        a, b, c = self.whole.corner.transpose(1, 0, 2)
+        least, thinnest_place = np.inf, start[0]
+        a, b, c = self.triangles.corner.transpose(1, 0, 2)
         normal = np.cross(b - a, c - a)
         normal /= np.maximum(np.linalg.norm(normal, axis=1), 1e-300)[:, None]
-        for place, ahead in zip(start, self.normal[face], strict=True):
-            facing = np.flatnonzero(normal @ ahead < OPPOSITE)
-            distance = _along_ray(place, -ahead, self.whole.corner[facing])
-            distance = distance[distance > 100.0 * self.little]
+        for place, outwards in zip(start, self.normal[face], strict=True):
+            facing = np.flatnonzero(normal @ outwards < OPPOSITE)
+            distance = _along_ray(place, -outwards, self.triangles.corner[facing])
+            distance = distance[distance > 100.0 * self.tolerance]
             if len(distance) and distance.min() < least:
-                least, where = float(distance.min()), place
-        return least, where
+                least, thinnest_place = float(distance.min()), place
+        return least, thinnest_place
 
 
 def _along_ray(place: Array, direction: Array, corner: Array) -> Array:
     """Distances (k,) m at which a ray meets triangles (t, 3, 3) m: Möller and Trumbore 1997."""
-    first, second = corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]
-    across = np.cross(direction, second)
-    whole = (first * across).sum(axis=1)
-    whole = np.where(whole == 0.0, np.nan, whole)
-    away = place - corner[:, 0]
-    u = (away * across).sum(axis=1) / whole
-    turned = np.cross(away, first)
-    v = (turned @ direction) / whole
-    distance = (second * turned).sum(axis=1) / whole
+    edge_1, edge_2 = corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]
+    p = np.cross(direction, edge_2)
+    determinant = (edge_1 * p).sum(axis=1)
+    determinant = np.where(determinant == 0.0, np.nan, determinant)
+    t = place - corner[:, 0]
+    u = (t * p).sum(axis=1) / determinant
+    q = np.cross(t, edge_1)
+    v = (q @ direction) / determinant
+    distance = (edge_2 * q).sum(axis=1) / determinant
     with np.errstate(invalid="ignore"):
         return distance[(u >= 0.0) & (v >= 0.0) & (u + v <= 1.0)]
 
 
-def _to_all(ways: Array) -> Array:
+def _to_all(vectors: Array) -> Array:
     """Shortest way whose part along each of some ways (k, 3) m is that way's length."""
-    length = np.linalg.norm(ways, axis=1)
-    inverse = np.linalg.pinv(ways / length[:, None], rcond=1e-6)
+    length = np.linalg.norm(vectors, axis=1)
+    inverse = np.linalg.pinv(vectors / length[:, None], rcond=1e-6)
     return np.asarray(inverse @ length)
 
 
 def _pieces(corner: Array, longest: float) -> tuple[Array, Whole]:
     """Middles (p, 3) m of pieces of triangles (t, 3, 3) m, and the triangle of each."""
-    owner, done, owners = np.arange(len(corner)), [], []
+    owner, pieces, owners = np.arange(len(corner)), [], []
     while len(corner):
         edges = np.linalg.norm(np.roll(corner, -1, axis=1) - corner, axis=2)
-        small = edges.max(axis=1) <= longest
-        done.append(corner[small])
-        owners.append(owner[small])
-        corner, owner, edges = corner[~small], owner[~small], edges[~small]
-        at, row = edges.argmax(axis=1), np.arange(len(corner))
-        begin, end, tip = (corner[row, (at + k) % 3] for k in range(3))
+        is_small = edges.max(axis=1) <= longest
+        pieces.append(corner[is_small])
+        owners.append(owner[is_small])
+        corner, owner, edges = corner[~is_small], owner[~is_small], edges[~is_small]
+        longest_edge, row = edges.argmax(axis=1), np.arange(len(corner))
+        begin, end, tip = (corner[row, (longest_edge + k) % 3] for k in range(3))
         middle = 0.5 * (begin + end)
         halves = [np.stack([begin, middle, tip], axis=1), np.stack([middle, end, tip], axis=1)]
         corner, owner = np.concatenate(halves), np.concatenate([owner, owner])
     order = np.argsort(np.concatenate(owners), kind="stable")
-    return np.concatenate(done).mean(axis=1)[order], np.concatenate(owners)[order]
+    return np.concatenate(pieces).mean(axis=1)[order], np.concatenate(owners)[order]
 
 
-def _rims(corner: Array, rims: int, little: float) -> Flags:
+def _rims(corner: Array, rims: int, tolerance: float) -> Flags:
     """Which edges (t, 3) of triangles no other triangle has."""
     if not rims:
         return np.zeros((len(corner), 3), bool)
-    _, number = np.unique(np.round(corner.reshape(-1, 3) / little), axis=0, return_inverse=True)
+    _, number = np.unique(np.round(corner.reshape(-1, 3) / tolerance), axis=0, return_inverse=True)
     number = number.reshape(-1, 3)
     edge = np.sort(np.stack([number, np.roll(number, -1, axis=1)], axis=2).reshape(-1, 2), axis=1)
     _, inverse, count = np.unique(edge, axis=0, return_inverse=True, return_counts=True)

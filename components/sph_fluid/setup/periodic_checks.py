@@ -1,4 +1,4 @@
-"""What a tank that repeats along axes must be like; each mistake is one sentence."""
+"""Checks of a tank that repeats along axes; each mistake is one sentence."""
 
 from quintet.components.sph_fluid.setup.boundary import Boundary
 from quintet.components.sph_fluid.setup.geometry import ROUNDING
@@ -8,13 +8,13 @@ LEAST = 5.0 / 3.0  # of three smoothing lengths: two reaches of the neighbour li
 
 
 def check_periodic(
-    boundary: Boundary, dimensions: int, gravity: Vector, apart: float, spacing: float
+    boundary: Boundary, dimensions: int, gravity: Vector, pair_range: float, spacing: float
 ) -> None:
     """A tank repeats along axes without walls, over lengths that pairs do not reach across.
 
     Parameters
     ----------
-    apart : float, m
+    pair_range : float, m
         Three smoothing lengths.
     """
     for axis in boundary.periodic:
@@ -24,11 +24,11 @@ def check_periodic(
                 f"{name} needs boundary.walls, whose length along {axis} is the period; found "
                 "none. Give walls."
             )
-        listed = [f for f in (*boundary.open_faces, *boundary.symmetry) if f[0] == axis]
-        if listed:
+        faces = [f for f in (*boundary.open_faces, *boundary.symmetry) if f[0] == axis]
+        if faces:
             raise ValueError(
                 f"{name} must be an axis whose faces are neither open nor planes of symmetry; "
-                f"found {listed}. Take them out of open_faces and symmetry, or remove {axis}."
+                f"found {faces}. Take them out of open_faces and symmetry, or remove {axis}."
             )
         if dimensions == 2 and axis == "y":
             raise ValueError(
@@ -41,11 +41,11 @@ def check_periodic(
                 f"found {gravity} m/s2. Turn gravity, or remove z."
             )
         length = boundary.tank[1][number] - boundary.tank[0][number]
-        if length < LEAST * apart:
+        if length < LEAST * pair_range:
             raise ValueError(
-                f"{name}: the tank must be {LEAST * apart:.4g} m or more along {axis}, 5 smoothing "
-                f"lengths, or pairs meet twice; found {length:g} m. Lengthen it, or refine the "
-                "spacing."
+                f"{name}: the tank must be {LEAST * pair_range:.4g} m or more along {axis}, 5 "
+                f"smoothing lengths, or pairs meet twice; found {length:g} m. Lengthen it, or "
+                "refine the spacing."
             )
         _check_obstacles(boundary, number, ROUNDING * spacing)
     _check_others(boundary)
@@ -67,13 +67,13 @@ def _check_obstacles(boundary: Boundary, axis: int, tolerance: float) -> None:
 
 
 def _check_others(boundary: Boundary) -> None:
-    """Refuse what knows no images a period away."""
-    wrong = {
+    """Refuse options that have no images a period away."""
+    conflicts = {
         "symmetry": (boundary.symmetry, "make these faces walls"),
         "meshes": (tuple(mesh.file for mesh in boundary.meshes), "use obstacles"),
         "lubrication_films": (boundary.lubrication_films is True, "leave films out"),
     }
-    for key, (value, remedy) in wrong.items():
+    for key, (value, remedy) in conflicts.items():
         if value:
             raise ValueError(
                 f"boundary.{key} is not available with boundary.periodic; found {value} and "

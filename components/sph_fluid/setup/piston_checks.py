@@ -1,4 +1,4 @@
-"""What pistons must suit; each mistake is one sentence."""
+"""Checks of pistons; each mistake is one sentence."""
 
 import itertools
 import math
@@ -21,41 +21,41 @@ def check_pistons(boundary: Boundary, dimensions: int, spacing: float) -> None:
     """Pistons are parts that are there, each once, and leave no gaps behind."""
     parts = [piston.part for piston in boundary.pistons]
     for number, piston in enumerate(boundary.pistons):
-        where = f"boundary.pistons[{number}]"
+        label = f"boundary.pistons[{number}]"
         if parts.index(piston.part) < number:
             raise ValueError(
-                f"{where} must move a part of its own; found {piston.part} twice. Remove one."
+                f"{label} must move a part of its own; found {piston.part} twice. Remove one."
             )
-        _check_part(where, piston, boundary, dimensions)
-        _check_start(where, piston, boundary, spacing)
+        _check_part(label, piston, boundary, dimensions)
+        _check_start(label, piston, boundary, spacing)
         if dimensions == 2 and not is_along(piston.path, "y"):
             raise ValueError(
-                f"{where}.motion must stay in the plane of x and z in two dimensions: displaced by "
+                f"{label}.motion must stay in the plane of x and z in two dimensions: displaced by "
                 "nothing along y, and turned about y. Correct it, or set dimensions to 3."
             )
         for face in boundary.symmetry:
             if not is_along(piston.path, face[0]):
                 raise ValueError(
-                    f"{where}.motion must stay in the plane of boundary.symmetry {face}: displaced "
+                    f"{label}.motion must stay in the plane of boundary.symmetry {face}: displaced "
                     f"by nothing along {face[0]}, and turned about {face[0]}. Correct it, or make "
                     "the face a wall."
                 )
         if piston.face and piston.waves is not None:
             raise ValueError(
-                f"{where}: {piston.part} must not make waves, as a paddle swings to both sides and "
+                f"{label}: {piston.part} must not make waves, as a paddle swings to both sides and "
                 "a face of the tank goes into it alone. Take an obstacle that reaches across."
             )
         if piston.face:
-            _check_face(where, piston, boundary, spacing)
-            _check_way(where, piston, boundary, _swept_by_face(piston, boundary), spacing)
+            _check_face(label, piston, boundary, spacing)
+            _check_way(label, piston, boundary, _swept_by_face(piston, boundary), spacing)
         elif (box := piston.number("obstacles")) >= 0:
-            _check_dry_faces(where, piston, boundary, box, spacing, dimensions)
+            _check_dry_faces(label, piston, boundary, box, spacing, dimensions)
         if not piston.face and (piston.path.turns or piston.number("meshes") >= 0):
-            _check_any_way(where, piston, boundary, spacing, dimensions)
+            _check_any_way(label, piston, boundary, spacing, dimensions)
         elif not piston.face:
             swept = _swept_by_box(piston, boundary.solids[piston.number("obstacles")])
-            _check_way(where, piston, boundary, swept, spacing)
-            _check_inside(where, piston, boundary, swept, dimensions)
+            _check_way(label, piston, boundary, swept, spacing)
+            _check_inside(label, piston, boundary, swept, dimensions)
     if boundary.method == "potential":
         raise ValueError(
             "boundary.pistons need boundary.method mdbc or dbc; found potential. Set method."
@@ -67,30 +67,30 @@ def check_pistons(boundary: Boundary, dimensions: int, spacing: float) -> None:
         )
 
 
-def _check_part(where: str, piston: Piston, boundary: Boundary, dimensions: int) -> None:
+def _check_part(label: str, piston: Piston, boundary: Boundary, dimensions: int) -> None:
     closed = boundary.closed_faces(dimensions) if boundary.tank else ()
     if piston.face and piston.face not in closed:
         raise ValueError(
-            f"{where}.part must be a closed face of the tank, {', '.join(closed) or 'of none here'}"
+            f"{label}.part must be a closed face of the tank, {', '.join(closed) or 'of none here'}"
             f"; found {piston.part}. Close the face, or name another part."
         )
     for kind, count in (("obstacles", len(boundary.solids)), ("meshes", len(boundary.meshes))):
         number = piston.number(kind)  # type: ignore[arg-type]
         if number >= count:
             raise ValueError(
-                f"{where}.part must be one of the {count} {kind}, numbered from 0 on; found "
+                f"{label}.part must be one of the {count} {kind}, numbered from 0 on; found "
                 f"{piston.part}. Correct its number."
             )
 
 
-def _check_start(where: str, piston: Piston, boundary: Boundary, spacing: float) -> None:
+def _check_start(label: str, piston: Piston, boundary: Boundary, spacing: float) -> None:
     """A motion begins where the part stands in the scene, outside of the fluid."""
     place = piston.path.trajectory.at(0.0).place
     shift, angle = math.hypot(*place[:3].tolist()), float(place[3])
     arms = [math.dist(corner, piston.path.point) for corner in part_corners(piston, boundary)]
     if shift + abs(angle) * max(arms, default=0.0) > START * spacing:
         raise ValueError(
-            f"{where}.motion must begin at no displacement and no angle, where {piston.part} "
+            f"{label}.motion must begin at no displacement and no angle, where {piston.part} "
             f"stands in the scene; found {shift:.3g} m and {angle:.3g} rad at 0 s. Move the part "
             "in the scene, and subtract the first place from the motion."
         )
@@ -108,25 +108,25 @@ def part_corners(piston: Piston, boundary: Boundary) -> Array:
     return np.zeros((0, 3))
 
 
-def _check_face(where: str, piston: Piston, boundary: Boundary, spacing: float) -> None:
+def _check_face(label: str, piston: Piston, boundary: Boundary, spacing: float) -> None:
     """A face moves into the tank, along its normal: behind it are no walls."""
     axis, sign = "xyz".index(piston.face[0]), 1.0 if piston.face[1] == "-" else -1.0
-    motion, across = piston.path, list(piston.path.shifts)
-    across[axis] = False
-    if motion.turns or any(across):
+    motion, shifts = piston.path, list(piston.path.shifts)
+    shifts[axis] = False
+    if motion.turns or any(shifts):
         raise ValueError(
-            f"{where}: {piston.part} must move along {piston.face[0]} alone, or it would leave the "
+            f"{label}: {piston.part} must move along {piston.face[0]} alone, or it would leave the "
             "other faces; take an obstacle for other motions."
         )
     if sign * motion.least(axis, sign) < -BACK * spacing:
         raise ValueError(
-            f"{where}: {piston.part} must move into the tank, from where it stands in the scene; "
+            f"{label}: {piston.part} must move into the tank, from where it stands in the scene; "
             f"found displacements of {motion.least(axis, sign):g} m along {piston.face[0]}, where "
             "the other faces have no walls. Move the face in the scene, or take an obstacle."
         )
     if piston.face in boundary.wall_velocity:
         raise ValueError(
-            f"{where}: {piston.part} must not have a boundary.wall_velocity too; found both. "
+            f"{label}: {piston.part} must not have a boundary.wall_velocity too; found both. "
             "Remove one."
         )
 
@@ -150,68 +150,68 @@ def _swept_by_box(piston: Piston, box: Bounds) -> Array:
 
 
 def _check_way(
-    where: str, piston: Piston, boundary: Boundary, swept: Array, spacing: float
+    label: str, piston: Piston, boundary: Boundary, swept: Array, spacing: float
 ) -> None:
     """No obstacle that stands is in the way, and a face does not reach the opposite one."""
-    moved = [other.number("obstacles") for other in boundary.pistons]
-    obstacle, little = piston.number("obstacles"), ROUNDING * spacing
+    moving_numbers = [part.number("obstacles") for part in boundary.pistons]
+    obstacle, tolerance = piston.number("obstacles"), ROUNDING * spacing
     for number, box in enumerate(boundary.solids):
-        low, high = np.array(box) if number not in moved else np.full((2, 3), np.nan)
-        shared = np.minimum(swept[:, 1], high) - np.maximum(swept[:, 0], low)
+        low, high = np.array(box) if number not in moving_numbers else np.full((2, 3), np.nan)
+        overlap_on_way = np.minimum(swept[:, 1], high) - np.maximum(swept[:, 0], low)
         at_start = np.array(boundary.solids[obstacle]) if obstacle >= 0 else np.full((2, 3), np.nan)
         overlap = np.minimum(at_start[1], high) - np.maximum(at_start[0], low)
-        if (shared > little).all(axis=1).any() and not (overlap > little).all():
-            raise _in_the_way(where, piston, number)
+        if (overlap_on_way > tolerance).all(axis=1).any() and not (overlap > tolerance).all():
+            raise _in_the_way(label, piston, number)
     if piston.face and boundary.tank is not None:
         axis = "xyz".index(piston.face[0])
         length = boundary.tank[1][axis] - boundary.tank[0][axis]
         travel = float(swept[0, 1, axis] - swept[0, 0, axis])
-        if travel >= length - little:
+        if travel >= length - tolerance:
             raise ValueError(
-                f"{where}: {piston.part} must stay before the opposite face, {length:g} m away; "
+                f"{label}: {piston.part} must stay before the opposite face, {length:g} m away; "
                 f"found a displacement of {travel:g} m. Shorten the motion."
             )
 
 
-def _in_the_way(where: str, piston: Piston, number: int) -> ValueError:
+def _in_the_way(label: str, piston: Piston, number: int) -> ValueError:
     return ValueError(
-        f"{where}: {piston.part} must not go through boundary.obstacles[{number}], which stands; "
+        f"{label}: {piston.part} must not go through boundary.obstacles[{number}], which stands; "
         "found that they overlap on its way. Shorten the motion, or move one of the two."
     )
 
 
-def _outside(where: str, piston: Piston, face: str) -> ValueError:
+def _outside(label: str, piston: Piston, face: str) -> ValueError:
     return ValueError(
-        f"{where}: {piston.part} must stay in the tank; found it beyond the wall {face} on its "
+        f"{label}: {piston.part} must stay in the tank; found it beyond the wall {face} on its "
         "way. Shorten the motion, or open the face."
     )
 
 
 def _check_any_way(
-    where: str, piston: Piston, boundary: Boundary, spacing: float, dimensions: int
+    label: str, piston: Piston, boundary: Boundary, spacing: float, dimensions: int
 ) -> None:
     """No obstacle that stands is in the way of what turns or is a mesh; it stays in the tank."""
-    moving = [other.number("obstacles") for other in boundary.pistons]
-    little = ROUNDING * spacing
+    moving_numbers = [part.number("obstacles") for part in boundary.pistons]
+    tolerance = ROUNDING * spacing
     standing = {
         number: box
         for number, box in enumerate(boundary.solids)
-        if number not in moving
-        and not meets(surface(piston, boundary), box, little)
+        if number not in moving_numbers
+        and not meets(surface(piston, boundary), box, tolerance)
         and not _holds_middle(piston, boundary, box)
     }
     closed = boundary.closed_faces(dimensions) if boundary.tank else ()
     for triangles in surfaces_on_way(piston, boundary, spacing):
         for number, box in standing.items():
-            if meets(triangles, box, little):
-                raise _in_the_way(where, piston, number)
+            if meets(triangles, box, tolerance):
+                raise _in_the_way(label, piston, number)
         low, high = triangles.min(axis=(0, 1)), triangles.max(axis=(0, 1))
         for face in closed:
             assert boundary.tank is not None
             axis, is_upper = "xyz".index(face[0]), face[1] == "+"
             wall = boundary.tank[int(is_upper)][axis]
             if low[axis] >= wall if is_upper else high[axis] <= wall:
-                raise _outside(where, piston, face)
+                raise _outside(label, piston, face)
 
 
 def _holds_middle(piston: Piston, boundary: Boundary, box: Bounds) -> bool:
@@ -224,7 +224,7 @@ def _holds_middle(piston: Piston, boundary: Boundary, box: Bounds) -> bool:
 
 
 def _check_inside(
-    where: str, piston: Piston, boundary: Boundary, swept: Array, dimensions: int
+    label: str, piston: Piston, boundary: Boundary, swept: Array, dimensions: int
 ) -> None:
     """An obstacle does not leave the tank through a closed face."""
     for face in boundary.closed_faces(dimensions) if boundary.tank else ():
@@ -233,11 +233,11 @@ def _check_inside(
         wall = boundary.tank["-+".index(face[1])][axis]
         outside = swept[:, 1, axis] <= wall if face[1] == "-" else swept[:, 0, axis] >= wall
         if outside.any():
-            raise _outside(where, piston, face)
+            raise _outside(label, piston, face)
 
 
 def _check_dry_faces(
-    where: str, piston: Piston, boundary: Boundary, box: int, spacing: float, dimensions: int
+    label: str, piston: Piston, boundary: Boundary, box: int, spacing: float, dimensions: int
 ) -> None:
     """Faces of an obstacle that lie on a wall stay on it."""
     if boundary.tank is None:
@@ -250,7 +250,7 @@ def _check_dry_faces(
         for side in range(2):
             if touches[side, axis] and closed[side] and not is_along(piston.path, name):
                 raise ValueError(
-                    f"{where}: {piston.part} must stay on the wall {sides[side]} that it touches: "
+                    f"{label}: {piston.part} must stay on the wall {sides[side]} that it touches: "
                     f"displaced by nothing along {name}, and turned about {name}. Let it stand off "
                     "the wall, or let it go through as far as it moves."
                 )

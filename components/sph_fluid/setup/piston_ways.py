@@ -51,9 +51,9 @@ def moved(points: Array, place: Array, axis: Array, point: Array) -> Array:
     arm = points - point
     # Written out: what a library makes of a product depends on its threads.
     x, y, z = axis.tolist()
-    along = (arm[..., 0] * x + arm[..., 1] * y + arm[..., 2] * z)[..., np.newaxis] * axis
-    turned = along + math.cos(angle) * (arm - along) + math.sin(angle) * np.cross(axis, arm)
-    return np.asarray(point + place[:3] + turned)
+    parallel = (arm[..., 0] * x + arm[..., 1] * y + arm[..., 2] * z)[..., np.newaxis] * axis
+    rotated = parallel + math.cos(angle) * (arm - parallel) + math.sin(angle) * np.cross(axis, arm)
+    return np.asarray(point + place[:3] + rotated)
 
 
 def places_of(piston: Piston, triangles: Array, spacing: float) -> Array:
@@ -61,15 +61,15 @@ def places_of(piston: Piston, triangles: Array, spacing: float) -> Array:
     course = piston.path.trajectory.course()
     arm = np.linalg.norm(triangles.reshape(-1, 3) - np.array(piston.path.point), axis=1).max()
     change = np.diff(course, axis=0)
-    way = np.linalg.norm(change[:, :3], axis=1) + arm * np.abs(change[:, 3])  # m
-    longest = max(LONGEST_STEP * spacing, float(way.sum()) / MOST_PLACES)
-    parts = np.maximum(np.ceil(way / longest).astype(int), 1)
-    cut = [
+    travel = np.linalg.norm(change[:, :3], axis=1) + arm * np.abs(change[:, 3])  # m
+    longest = max(LONGEST_STEP * spacing, float(travel.sum()) / MOST_PLACES)
+    parts = np.maximum(np.ceil(travel / longest).astype(int), 1)
+    places = [
         begin + (np.arange(count) / count)[:, np.newaxis] * step
         for begin, step, count in zip(course[:-1], change, parts, strict=True)
         if step.any()
     ]
-    return np.concatenate([*cut, course[-1:]])
+    return np.concatenate([*places, course[-1:]])
 
 
 def surfaces_on_way(piston: Piston, boundary: Boundary, spacing: float) -> Iterator[Array]:
@@ -79,23 +79,23 @@ def surfaces_on_way(piston: Piston, boundary: Boundary, spacing: float) -> Itera
         yield moved(triangles, place, piston.path.direction, point)
 
 
-def meets(triangles: Array, box: Bounds, little: float) -> bool:
-    """Whether some of the triangles (t, 3, 3) m lie deeper than a little [m] in a box."""
-    low, high = np.array(box[0]) + little, np.array(box[1]) - little
+def meets(triangles: Array, box: Bounds, tolerance: float) -> bool:
+    """Whether some of the triangles (t, 3, 3) m lie deeper than a tolerance [m] in a box."""
+    low, high = np.array(box[0]) + tolerance, np.array(box[1]) - tolerance
     if (low >= high).any():
         return False
-    near = (triangles.min(axis=1) < high) & (triangles.max(axis=1) > low)
-    corner = triangles[near.all(axis=1)] - 0.5 * (low + high)
+    is_near = (triangles.min(axis=1) < high) & (triangles.max(axis=1) > low)
+    corner = triangles[is_near.all(axis=1)] - 0.5 * (low + high)
     if not len(corner):
         return False
     half = 0.5 * (high - low)
     edges = np.roll(corner, -1, axis=1) - corner
     normal = np.cross(edges[:, 0], edges[:, 1])
-    apart = np.abs((normal * corner[:, 0]).sum(axis=1)) >= np.abs(normal) @ half
+    is_apart = np.abs((normal * corner[:, 0]).sum(axis=1)) >= np.abs(normal) @ half
     for unit, k in itertools.product(np.eye(3), range(3)):
         axis = np.cross(unit, edges[:, k])
-        along = (corner * axis[:, np.newaxis]).sum(axis=2)  # (t, 3)
+        projection = (corner * axis[:, np.newaxis]).sum(axis=2)  # (t, 3)
         reach = np.abs(axis) @ half
-        between = (along.min(axis=1) >= reach) | (along.max(axis=1) <= -reach)
-        apart |= between & (reach > 0.0)
-    return not bool(apart.all())
+        between = (projection.min(axis=1) >= reach) | (projection.max(axis=1) <= -reach)
+        is_apart |= between & (reach > 0.0)
+    return not bool(is_apart.all())

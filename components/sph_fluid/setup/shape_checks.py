@@ -1,4 +1,4 @@
-"""What concerns fluid in other shapes than boxes; imported only by a scene that has some."""
+"""Checks of fluid in other shapes than boxes; imported only by a scene that has some."""
 
 from collections.abc import Sequence
 
@@ -30,16 +30,16 @@ def check_shapes(
                 f"{shape.shape}. Change it, or set dimensions to 3."
             )
         points = fill_shape(shape, spacing, planar)
-        for other, box in boxes:
+        for other_name, box in boxes:
             if count := int(_inside(points, box).sum()):
                 raise ValueError(
-                    f"{name} must not overlap {other}; {count} of its {len(points)} particles "
+                    f"{name} must not overlap {other_name}; {count} of its {len(points)} particles "
                     "stand in it. Cut one of them."
                 )
-        for other, earlier in shapes[:number]:
+        for other_name, earlier in shapes[:number]:
             if _overlap(points, fill_shape(earlier, spacing, planar), NEAR * spacing):
                 raise ValueError(
-                    f"{name} must not overlap {other}; particles of both stand nearer than "
+                    f"{name} must not overlap {other_name}; particles of both stand nearer than "
                     f"{NEAR:g} spacings. Move or cut one of them."
                 )
 
@@ -49,7 +49,7 @@ def _inside(points: Array, box: Bounds) -> NDArray[np.bool_]:
     return np.asarray(((points > low) & (points < high)).all(axis=1))
 
 
-def _overlap(points: Array, others: Array, distance: float) -> bool:
+def _overlap(points: Array, other_points: Array, distance: float) -> bool:
     """Whether points of two sets are nearer than a distance [m]."""
-    nearest, _ = cKDTree(points).query(others)
+    nearest, _ = cKDTree(points).query(other_points)
     return bool((nearest < distance).any())

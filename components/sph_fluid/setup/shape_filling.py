@@ -36,16 +36,16 @@ class Edge(NamedTuple):
 
 def edges(shape: FluidRegion, spacing: float, planar: bool) -> list[Edge]:
     """Cells that a shape is cut into; `planar`: one along y."""
-    body, cut = shape.geometry, []
+    body, axis_edges = shape.geometry, []
     for axis, low, high in zip(range(3), *body.bounds, strict=True):
         if isinstance(body, Sphere) or (isinstance(body, Cylinder) and axis != body.axis):
             count = math.ceil((high - low) / spacing)
             middle, half = 0.5 * (low + high), 0.5 * count * spacing
-            cut.append(Edge(middle - half, middle + half, count))
+            axis_edges.append(Edge(middle - half, middle + half, count))
         else:
             count = 1 if planar and axis == 1 else cells_between(low, high, spacing)
-            cut.append(Edge(low, high, count))
-    return cut
+            axis_edges.append(Edge(low, high, count))
+    return axis_edges
 
 
 def particle_count(shape: FluidRegion, spacing: float, planar: bool) -> int:
@@ -57,29 +57,29 @@ def particle_count(shape: FluidRegion, spacing: float, planar: bool) -> int:
 @lru_cache(maxsize=16)
 def fill_shape(shape: FluidRegion, spacing: float, planar: bool) -> Array:
     """Middles (n, 3) m of the cells that a shape fills, x fastest."""
-    cut = edges(shape, spacing, planar)
-    axes = [cell_centres(*edge) for edge in cut]
-    part = _parts(shape, cut, axes, planar)
+    axis_edges = edges(shape, spacing, planar)
+    axes = [cell_centres(*edge) for edge in axis_edges]
+    part = _parts(shape, axis_edges, axes, planar)
     order = np.lexsort((np.mod(np.arange(part.size) * TURN, 1.0), -part))
     filled = np.sort(order[: particle_count(shape, spacing, planar)])
     return lattice_points(axes)[filled]
 
 
-def _parts(shape: FluidRegion, cut: list[Edge], axes: list[Array], planar: bool) -> Array:
+def _parts(shape: FluidRegion, axis_edges: list[Edge], axes: list[Array], planar: bool) -> Array:
     """Part of each cell that is inside, x fastest; one layer of cells after another."""
     inner = (np.arange(FINE) + 0.5) / FINE - 0.5
     finer = [
         (place[:, np.newaxis] + inner * edge.step).ravel()
-        for place, edge in zip(axes, cut, strict=True)
+        for place, edge in zip(axes, axis_edges, strict=True)
     ]
     if planar:
         finer[1] = axes[1]
     shares = len(axes[0]), FINE, len(axes[1]), 1 if planar else FINE, FINE
     body, sizes = shape.geometry, (len(finer[0]), len(finer[1]), FINE)
     parts = []
-    for layer in range(cut[2].cells):
+    for layer in range(axis_edges[2].cells):
         z = finer[2][layer * FINE : (layer + 1) * FINE]
         places = np.meshgrid(finer[0], finer[1], z, indexing="ij", sparse=True)
-        some = np.broadcast_to(body.contains(*places), sizes).reshape(shares)
-        parts.append(some.mean(axis=(1, 3, 4)).T.ravel())
+        is_inside = np.broadcast_to(body.contains(*places), sizes).reshape(shares)
+        parts.append(is_inside.mean(axis=(1, 3, 4)).T.ravel())
     return np.concatenate(parts)

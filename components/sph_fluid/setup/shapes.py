@@ -49,9 +49,9 @@ class Prism:
         """Whether places [m] are inside."""
         places = x, y, z
         first, second = (places[axis] for axis in ACROSS[self.axis])
-        along = places["xyz".index(self.axis)]
-        within = (along > self.ends[0]) & (along < self.ends[1])
-        return within & inside_polygon(first, second, np.array(self.corners))
+        coordinate = places["xyz".index(self.axis)]
+        is_between = (coordinate > self.ends[0]) & (coordinate < self.ends[1])
+        return is_between & inside_polygon(first, second, np.array(self.corners))
 
 
 @parameters

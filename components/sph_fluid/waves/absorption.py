@@ -81,7 +81,7 @@ def _spots(params: SphFluidParams, number: int, distance: float) -> Array:
     piston = params.boundary.pistons[number]
     assert piston.waves is not None
     forward = piston.waves.forward[:2]
-    along = np.array([-forward[1], forward[0]])
+    direction = np.array([-forward[1], forward[0]])
     corners = part_corners(piston, params.boundary)
     lows, highs = zip(*params.extents, strict=True)
     water = np.array([np.min(lows, axis=0)[:2], np.max(highs, axis=0)[:2]])
@@ -89,13 +89,16 @@ def _spots(params: SphFluidParams, number: int, distance: float) -> Array:
     if params.dimensions == 2:
         middle = float(water[:, 1].mean())
         return np.array([[face * float(forward[0]), middle]])
-    wet = np.array([[x, y] for x in water[:, 0] for y in water[:, 1]])
-    sides = [points[:, 0] * along[0] + points[:, 1] * along[1] for points in (corners, wet)]
+    water_corners = np.array([[x, y] for x in water[:, 0] for y in water[:, 1]])
+    sides = [
+        points[:, 0] * direction[0] + points[:, 1] * direction[1]
+        for points in (corners, water_corners)
+    ]
     low, high = max(s.min() for s in sides), min(s.max() for s in sides)
     spacing = ACROSS * constants(params).smoothing.length
     count = max(1, round((high - low) / spacing))
     places = low + (high - low) * (np.arange(count) + 0.5) / count
-    return np.asarray(face * forward + places[:, np.newaxis] * along)
+    return np.asarray(face * forward + places[:, np.newaxis] * direction)
 
 
 def _room(params: SphFluidParams, number: int) -> tuple[float, float]:
@@ -110,23 +113,23 @@ def _room(params: SphFluidParams, number: int) -> tuple[float, float]:
             continue
         assert boundary.tank is not None
         side = corners[:, axis].max() if is_upper else corners[:, axis].min()
-        way = (boundary.tank[int(is_upper)][axis] - float(side)) / part
+        distance = (boundary.tank[int(is_upper)][axis] - float(side)) / part
         end = int(is_upper == (part > 0.0))
-        room[end] = min(room[end], way) if end else max(room[end], way)
-    along = np.array([-piston.waves.forward[1], piston.waves.forward[0], 0.0])
-    axes = np.stack([piston.waves.forward, along, np.array([0.0, 0.0, 1.0])], axis=1)
-    moved = [other.number("obstacles") for other in boundary.pistons]
+        room[end] = min(room[end], distance) if end else max(room[end], distance)
+    sideways = np.array([-piston.waves.forward[1], piston.waves.forward[0], 0.0])
+    axes = np.stack([piston.waves.forward, sideways, np.array([0.0, 0.0, 1.0])], axis=1)
+    moving_numbers = [paddle.number("obstacles") for paddle in boundary.pistons]
     low, high = (corners @ axes).min(axis=0), (corners @ axes).max(axis=0)
-    little = ROUNDING * params.spacing
+    tolerance = ROUNDING * params.spacing
     across = [2] if params.dimensions == 2 else [1, 2]
     for solid, box in enumerate(boundary.solids):
         ends = np.array(list(itertools.product(*zip(*box, strict=True)))) @ axes
-        least, most = ends.min(axis=0), ends.max(axis=0)
-        beside = np.minimum(high, most) - np.maximum(low, least) <= little
-        if solid in moved or beside[across].any() or not beside[0]:
+        least, greatest = ends.min(axis=0), ends.max(axis=0)
+        beside = np.minimum(high, greatest) - np.maximum(low, least) <= tolerance
+        if solid in moving_numbers or beside[across].any() or not beside[0]:
             continue
-        if least[0] >= high[0] - little:
+        if least[0] >= high[0] - tolerance:
             room[1] = min(room[1], float(least[0] - high[0]))
         else:
-            room[0] = max(room[0], float(most[0] - low[0]))
+            room[0] = max(room[0], float(greatest[0] - low[0]))
     return room[0], room[1]

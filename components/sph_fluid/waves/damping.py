@@ -31,7 +31,7 @@ class DampingZones:
 
     def apply(self, state: State, dt: float) -> None:
         """Damp velocities at the end of a step [s]."""
-        taken = np.zeros(state.fluid)  # m2/s2
+        speed2_loss = np.zeros(state.fluid)  # m2/s2
         for zone in self.zones:
             rows, strength = self._inside(zone, state)
             velocity = state.velocity_pressure[rows, :3]
@@ -39,12 +39,12 @@ class DampingZones:
             speed2 = u * u + v * v + w * w
             share = damped_share(strength, zone.rate, dt)
             state.velocity_pressure[rows, :3] = velocity * share[:, np.newaxis]
-            taken[rows] += speed2 * (1.0 - share * share)
-        self.count_work(state, taken)
+            speed2_loss[rows] += speed2 * (1.0 - share * share)
+        self.count_work(state, speed2_loss)
 
-    def count_work(self, state: State, taken: Array) -> None:
-        """Count what was taken of the squares of velocities (fluid,) m2/s2."""
-        (sum2,) = self.ranks.sums(state, [taken]).tolist()
+    def count_work(self, state: State, speed2_loss: Array) -> None:
+        """Count the work of a loss of squared velocities (fluid,) m2/s2."""
+        (sum2,) = self.ranks.sums(state, [speed2_loss]).tolist()
         self.work -= 0.5 * self.mass * sum2
 
     def _inside(self, zone: DampingZone, state: State) -> tuple[Whole, Array]:
