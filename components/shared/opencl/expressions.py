@@ -206,9 +206,7 @@ class Expressions:
             self.program.add_power(c_name(kind), exponent.number)
             return Value(f"{power_name(c_name(kind), exponent.number)}({base.code})", kind)
         kind = max(base.kind, exponent.kind, REAL, key=NUMBERS.index)
-        a, b = (
-            converted(operand, kind, self.program.precision).code for operand in (base, exponent)
-        )
+        a, b = (converted(value, kind, self.program.precision).code for value in (base, exponent))
         return Value(f"pow({a}, {b})", kind)
 
     def _compare(self, node: ast.Compare) -> Value:
@@ -278,10 +276,8 @@ class Expressions:
         if isinstance(function, type) and hasattr(function, "_fields"):
             return self._record(function, arguments, node)
         if function is len and isinstance(arguments[0].kind, Row | Record):
-            container = arguments[0].kind
-            return self.constant(
-                len(container.items if isinstance(container, Row) else container.fields), node
-            )
+            kinds = arguments[0].kind
+            return self.constant(len(kinds.items if isinstance(kinds, Row) else kinds.fields), node)
         if (
             value := intrinsic(self.place, self.program.precision, function, arguments, node)
         ) is not None:
