@@ -58,10 +58,10 @@ def read_table(file: str) -> FieldTable:
     """Read a table; its first line names the columns."""
     name = Path(file).name
     columns, numbers = read_csv(file, "table")
-    known = (*AXES, *FIELDS)
+    allowed = (*AXES, *FIELDS)
     axes = [column for column in columns if column in AXES]
     fields = [column for column in columns if column in FIELDS]
-    right = len(set(columns)) == len(columns) and set(columns) <= set(known) and axes and fields
+    right = len(set(columns)) == len(columns) and set(columns) <= set(allowed) and axes and fields
     if not right or numbers.ndim != 2 or not np.isfinite(numbers).all():
         raise ValueError(
             f"table {name} must have columns of finite numbers, each once, one of {', '.join(AXES)}"

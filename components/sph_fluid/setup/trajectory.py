@@ -151,6 +151,6 @@ def _slopes(times: Array, places: Array) -> Array:
     return slopes
 
 
-def _end_slope(near: float, next_to: float, secant: Array, other: Array) -> Array:
+def _end_slope(step: float, next_step: float, secant: Array, next_secant: Array) -> Array:
     """Slope at the end of the parabola through three rows, by the two secants between them."""
-    return np.asarray(secant + (secant - other) * near / (near + next_to))
+    return np.asarray(secant + (secant - next_secant) * step / (step + next_step))
