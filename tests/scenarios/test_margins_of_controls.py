@@ -14,7 +14,6 @@ SCENARIOS = Path(__file__).parents[2] / "scenarios"
 TABLE = re.compile(r"<!-- controls -->\n(.*?)\n<!-- end of controls -->", re.DOTALL)
 # Their controls are stated but have not been run yet; scenarios/README.md has the command.
 NOT_RUN = {
-    "hull_in_waves",
     "dam_break_cubes",
 }
 
