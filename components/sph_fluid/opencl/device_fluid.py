@@ -64,7 +64,7 @@ class DeviceFluid(Component):
         self._put()
 
     def _refuse_other_parts(self, device: str) -> None:
-        """Refuse parts of the host that its step would call: a device's step does not."""
+        """Refuse parts that a step on the processor calls, and one on a device does not."""
         host = self.host
         pairs = (
             (host.symmetry, NoSymmetry),
