@@ -42,9 +42,9 @@ def notes(lines: Lines, state: State) -> tuple[str, ...]:
 
 
 def warnings(gauge: Array, lines: Lines, mass: Array, step: float) -> dict[str, str]:
-    """Warn of lines that are stretched by more than cables bear, and of windows that are too long.
+    """Warn of lines that are stretched beyond the strength of cables, and of unstable windows.
 
-    A body of mass m on lines of stiffness k bears windows of 2 √(m/k), as a spring in leap-frog.
+    Windows must be shorter than 2 √(m/k), as steps of leap-frog for a mass m on a spring k.
     """
     texts = {}
     strain = gauge[:, 0] / lines.stiffness
@@ -60,7 +60,7 @@ def warnings(gauge: Array, lines: Lines, mass: Array, step: float) -> dict[str, 
     if step * step * squares[body] > 4.0:
         longest = 2.0 / squares[body] ** 0.5
         texts["window"] = (
-            f"windows of {step:.3g} s are longer than {longest:.3g} s, which body {body} bears on "
-            f"lines of {stiffness[body]:.3g} N/m. Set a shorter window."
+            f"windows must be shorter than {longest:.3g} s for body {body} on lines of "
+            f"{stiffness[body]:.3g} N/m; found {step:.3g} s. Set a shorter window."
         )
     return texts

@@ -58,9 +58,6 @@ class MooringLinesParams:
     ----------
     lines
         In the order in which gauges count them.
-    line_gauge
-        Whether the pull of each line is given, as port `line_gauge`.
     """
 
     lines: Annotated[tuple[Line, ...], Field(min_length=1)]
-    line_gauge: bool = True

@@ -23,4 +23,4 @@ SHOWS = (TENSION, RADIUS)
 
 def ports(params: MooringLinesParams) -> Ports:
     """Ports taken and given."""
-    return (BODIES,), (PULL, GAUGE) if params.line_gauge else (PULL,)
+    return (BODIES,), (PULL, GAUGE)

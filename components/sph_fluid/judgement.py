@@ -125,7 +125,8 @@ def _most_artificial(
 ) -> Limit:
     """Largest equivalent viscosity [m2/s] that leaves the flow as it is, and why.
 
-    `weight_energy` [J] is m g depth, `mass` [kg] that of all the fluid. Fluid at rest bears any.
+    `weight_energy` [J] is m g depth, `mass` [kg] that of all the fluid. No limit
+    holds for fluid at rest.
     """
     kinematic = params.viscosity.kinematic
     if kinematic > 0.0:

@@ -139,7 +139,7 @@ class DeviceFluid(Component):
         host.pistons.advance(state, dt)
 
     def _place_pistons(self, dt: float) -> None:
-        """Put pistons where they are in the middle of a step; those that absorb read the fluid."""
+        """Place pistons at the middle of a step; those that absorb waves read the fluid first."""
         if any(piston.absorbs for piston in self.params.boundary.pistons):
             self._get()
         self.host.pistons.place(self.host.state, self.host.boundary, dt)

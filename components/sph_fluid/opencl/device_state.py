@@ -204,7 +204,7 @@ class DeviceState:
         return self.count if self.mirrored else -1
 
     def listed(self, row: Whole) -> Whole:
-        """Rows (samples,) of the lists that have what is around samples, of rows (samples,)."""
+        """Rows (samples,) of the neighbour lists around samples with these rows (samples,)."""
         return self.count + np.arange(len(row)) if self.mirrored else row
 
     def lengths(self) -> Lists:

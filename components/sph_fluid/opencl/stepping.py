@@ -78,7 +78,7 @@ class Stepping:
     def step(self, state: State, dt: float, apply_forces: Callable[[], None]) -> Extremes:
         """Advance the rows by dt [s]; `state` has the length of the last step.
 
-        `apply_forces` is called once, when the rates are those that the step is made of.
+        `apply_forces` is called once per step, as soon as the forces of the step are known.
         """
         rows = self.rows
         self._scheme.step(dt, state.last_dt, apply_forces)

@@ -75,7 +75,7 @@ def test_a_step_beyond_the_limit_ends_with_where_and_what_to_do():
 
 def test_two_threads_give_the_bits_of_one(monkeypatch):
     for module in (component, scheme, diagnostics):
-        monkeypatch.setattr(module, "LIGHT", 20)  # also what is too little to be worth it
+        monkeypatch.setattr(module, "LIGHT", 20)  # so that small cases take this way too
     monkeypatch.setattr(scheme, "SUMS", 20)
     monkeypatch.setattr(diagnostics, "WHOLESALE", 20)
     monkeypatch.setattr("quintet.components.meshless_gas.state.WHOLESALE", 20)

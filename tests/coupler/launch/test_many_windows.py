@@ -35,7 +35,7 @@ for window in range(count):
     if window == count // 2:
         time.sleep(8.0)  # the answer lies there for longer than a silent component may take
     returned = part.finish().fields["returned.value"]
-    assert (returned == window + 0.5).all() or (found == window + 1.0).all(), window
+    assert (returned == window + 0.5).all() or (returned == window + 1.0).all(), window
 threads = [thread.name for thread in threading.enumerate() if thread.daemon]
 connection.close(True)
 assert threads == ["watchdog"], threads  # one of a library may abort the process as Python ends
