@@ -16,7 +16,9 @@ from quintet.components.shared.opencl.types import bytes_of
 from quintet.components.shared.search.cells import REACH, Grid, cell_of
 
 SOURCE = Path(__file__).with_name("cells.cl")
-PARTS = 256  # of rows, of which each work item finds the greatest
+# Work items that find the greatest of their rows: those of a processor, and before them those of
+# other devices, which hide the latency of their memory by many.
+PARTS, MANY_PARTS = 256, 1 << 16
 GRID = Grid(0.0, 0.0, 0.0, 1.0, 1, 1, 1, 0, 1, 2)  # of the types that every one has
 FEWEST = 32  # neighbours that lists have room for at first
 
@@ -56,13 +58,15 @@ class Cells:
         self._number_rows, self._sort_pass = kernels.number_rows, kernels.sort_pass
         self._start_cells, self._greatest = kernels.start_cells, kernels.greatest
         self._search = kernels.search
-        self._parts = DeviceArray(queue, (PARTS, 4))
+        sizes = (PARTS,) if by_rows else (MANY_PARTS, PARTS)
+        self._parts = [DeviceArray(queue, (size, 4)) for size in sizes]
 
     def greatest(self, rows: DeviceArray, count: int) -> NDArray[np.float64]:
         """Greatest (4,) of each column of `count` rows (n, 4)."""
-        arguments = (rows.memory, np.int32(count), self._parts.memory)
-        self._greatest(self.queue, (PARTS,), (GROUP,), *arguments)
-        greatest: NDArray[np.float64] = self._parts.get().max(axis=0)
+        for parts in self._parts:
+            run(self.queue, self._greatest, parts.shape[0], rows, np.int32(count), parts)
+            rows, count = parts, parts.shape[0]
+        greatest: NDArray[np.float64] = rows.get().max(axis=0)
         return greatest
 
     def sorted_keys(self, position: DeviceArray, first: int, count: int, grid: Grid) -> DeviceArray:
