@@ -33,6 +33,7 @@ def cases() -> tuple[BenchCase, ...]:
     """All cases; the dam falls long enough for its neighbour lists to be made again."""
     dam = tank((159, 59, 60), (60, 59, 30), 20.0)
     small = tank((80, 30, 30), (30, 30, 15), 20.0)
+    large = tank((500, 250, 250), (250, 250, 125), 20.0)
     mirrored = dam | {"boundary": dam["boundary"] | {"method": "mdbc"}}
     channels = [
         BenchCase(
@@ -46,7 +47,7 @@ def cases() -> tuple[BenchCase, ...]:
         for name, length in LENGTHS.items()
     ]
     # Loads pyopencl where it is installed; benchmarks alone ask for it.
-    from quintet.components.shared.opencl.devices import is_any_there
+    from quintet.components.shared.opencl.devices import is_accelerator_there, is_any_there
 
     none: tuple[Fields, Fields] = {}, {}
     on_devices = (
@@ -60,6 +61,17 @@ def cases() -> tuple[BenchCase, ...]:
         )
         if is_any_there()
     )
+    # Fewer do not fill an accelerator; processors would take minutes.
+    million = tank((LENGTHS["1M"], 40, 25), (LENGTHS["1M"], 20, 20), 10.0)
+    on_accelerators = (
+        BenchCase(f"{name}, OpenCL", params, 10, 500, UNIT, device="opencl")
+        for name, params in (
+            ("channel, 1M", million),
+            ("channel, 1M, float32", million | {"precision": "float32"}),
+            ("dam break, 8M, float32", large | {"precision": "float32"}),
+        )
+        if is_accelerator_there()
+    )
     return (
         BenchCase("dam break", dam, 10, 600, UNIT, series="dam break"),
         BenchCase("dam break, 22k", small, 10, 600, UNIT, series="dam break"),
@@ -70,6 +82,7 @@ def cases() -> tuple[BenchCase, ...]:
         BenchCase("dam break, coupled", dam | {"fluid": NOTCHED}, 10, 600, UNIT, *cube()),
         *channels,
         *on_devices,
+        *on_accelerators,
     )
 
 

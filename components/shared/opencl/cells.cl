@@ -17,16 +17,39 @@ __kernel void number_rows(
     key[k] = (cell << 32) | (first + k);
 }
 
+/* Order two of the keys of a bitonic sort: rising, unless bit `size` of the first one's row is set. */
+#define IN_ORDER(first, second, row, size) \
+    { \
+        const long a = first, b = second; \
+        if ((a > b) == (((row) & (size)) == 0)) { \
+            first = b; \
+            second = a; \
+        } \
+    }
+
 /* A pass of Batcher's bitonic sort over keys, a power of two; keys are all different. */
 __kernel void sort_pass(__global long *key, int size, int distance)
 {
     const int i = get_global_id(0), j = i ^ distance;
-    if (j < i) return;
-    const long a = key[i], b = key[j];
-    if ((a > b) == ((i & size) == 0)) {
-        key[i] = b;
-        key[j] = a;
-    }
+    if (j > i) IN_ORDER(key[i], key[j], i, size);
+}
+
+/* All passes of the sort from one size to another whose keys are in the same BLOCK. */
+__kernel void sort_blocks(__global long *key, int from, int to)
+{
+    __local long block[BLOCK];
+    const int item = get_local_id(0), items = get_local_size(0), start = get_group_id(0) * BLOCK;
+    for (int k = item; k < BLOCK; k += items) block[k] = key[start + k];
+    for (int size = from; size <= to; size <<= 1)
+        for (int distance = min(size, BLOCK) >> 1; distance; distance >>= 1) {
+            barrier(CLK_LOCAL_MEM_FENCE);
+            for (int pair = item; pair < BLOCK / 2; pair += items) {
+                const int low = pair & (distance - 1), i = ((pair - low) << 1) + low;
+                IN_ORDER(block[i], block[i + distance], start + i, size);
+            }
+        }
+    barrier(CLK_LOCAL_MEM_FENCE);
+    for (int k = item; k < BLOCK; k += items) key[start + k] = block[k];
 }
 
 /* Where each cell starts among sorted points; `start` has two more than there are cells. */

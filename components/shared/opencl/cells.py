@@ -20,13 +20,14 @@ SOURCE = Path(__file__).with_name("cells.cl")
 # other devices, which hide the latency of their memory by many.
 PARTS, MANY_PARTS = 256, 1 << 16
 GRID = Grid(0.0, 0.0, 0.0, 1.0, 1, 1, 1, 0, 1, 2)  # of the types that every one has
+BLOCK = 1024  # keys that a group of work items sorts in its local memory, a power of two
 FEWEST = 32  # neighbours that lists have room for at first
 
 
 def source(program: Program) -> str:
     """Print the laws of cells; return the kernels."""
     name, _ = program.add(cell_of, 0.0, 0.0, 0.0, GRID)
-    names = {"REACH": REACH, "cell_of": name, "Grid": program.struct(GRID)}
+    names = {"REACH": REACH, "BLOCK": BLOCK, "cell_of": name, "Grid": program.struct(GRID)}
     defined = "\n".join(f"#define {macro} {meaning}" for macro, meaning in names.items())
     return f"{defined}\n{SOURCE.read_text()}"
 
@@ -55,9 +56,11 @@ class Cells:
 
     def __init__(self, queue: Any, kernels: Any, by_rows: bool) -> None:
         self.queue, self.by_rows, self.width = queue, by_rows, FEWEST
-        self._number_rows, self._sort_pass = kernels.number_rows, kernels.sort_pass
+        self._number_rows = kernels.number_rows
+        self._sort_pass, self._sort_blocks = kernels.sort_pass, kernels.sort_blocks
         self._start_cells, self._greatest = kernels.start_cells, kernels.greatest
         self._search = kernels.search
+        self._room: DeviceArray | None = None  # of all lists: they are the largest array by far
         sizes = (PARTS,) if by_rows else (MANY_PARTS, PARTS)
         self._parts = [DeviceArray(queue, (size, 4)) for size in sizes]
 
@@ -71,17 +74,20 @@ class Cells:
 
     def sorted_keys(self, position: DeviceArray, first: int, count: int, grid: Grid) -> DeviceArray:
         """Keys (any,) of `count` rows from `first` on, by cell and then by row."""
-        size = max(1 << (count - 1).bit_length(), GROUP)
+        size = max(1 << (count - 1).bit_length(), BLOCK)
         key = DeviceArray(self.queue, (size,), np.int64)
         numbers = (np.int32(first), np.int32(count), bytes_of(grid, np.float64), key)
         run(self.queue, self._number_rows, size, position, *numbers)
-        block = 2
-        while block <= size:
-            distance = block >> 1
-            while distance:
-                run(self.queue, self._sort_pass, size, key, np.int32(block), np.int32(distance))
+        items = size // BLOCK * GROUP
+        run(self.queue, self._sort_blocks, items, key, np.int32(2), np.int32(BLOCK))
+        part = 2 * BLOCK
+        while part <= size:
+            distance = part >> 1
+            while distance >= BLOCK:
+                run(self.queue, self._sort_pass, size, key, np.int32(part), np.int32(distance))
                 distance >>= 1
-            block <<= 1
+            run(self.queue, self._sort_blocks, items, key, np.int32(part), np.int32(part))
+            part <<= 1
         return key
 
     def starts(self, key: DeviceArray, first: int, count: int, grid: Grid) -> DeviceArray:
@@ -111,7 +117,7 @@ class Cells:
         while True:
             by_rows = (self.width, 1) if self.by_rows else (1, count)
             row_stride, item_stride = map(np.int64, by_rows)
-            near = DeviceArray(self.queue, (count * self.width,), np.int32)
+            near = self._room_for(count * self.width)
             run(
                 self.queue, self._search, count, position, places, np.int32(split), np.int32(count),
                 bytes_of(grid, np.float64), *starts, np.float64(reach * reach),
@@ -121,3 +127,9 @@ class Cells:
             if longest <= self.width:
                 return NearLists(near, middle, end, row_stride, item_stride)
             self.width = longest + longest // 8
+
+    def _room_for(self, neighbours: int) -> DeviceArray:
+        """Room for lists of so many neighbours, the former lists' own where it is large enough."""
+        if self._room is None or self._room.shape[0] < neighbours:
+            self._room = DeviceArray(self.queue, (neighbours,), np.int32)
+        return self._room

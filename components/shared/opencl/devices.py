@@ -92,19 +92,25 @@ class Device:
 
 
 def devices() -> list[Device]:
-    """All devices, in the order of their platforms; none if there is no platform."""
+    """All devices, processors last, in the order of their platforms; none without a platform."""
     cl = opencl()
     try:
         platforms = cl.get_platforms()
     except cl.LogicError:  # the loader knows no driver
         return []
     handles = [handle for platform in platforms for handle in platform.get_devices()]
+    handles.sort(key=lambda handle: bool(handle.type & cl.device_type.CPU))
     return [Device(number, handle) for number, handle in enumerate(handles)]
 
 
 def is_any_there() -> bool:
     """Whether this machine has pyopencl, and its first device double precision."""
     return is_installed("pyopencl") and any(device.has_doubles for device in devices()[:1])
+
+
+def is_accelerator_there() -> bool:
+    """Whether the first device has double precision, and is not the processor."""
+    return is_any_there() and not devices()[0].is_processor
 
 
 def device_of(name: str) -> Device:

@@ -24,6 +24,7 @@ from quintet.components.sph_fluid.state import Array, State, Whole
 BESIDE = 1.2  # spacings, between neighbours in a film: those on its square lattice
 MOST = 8  # of them
 BEYOND = 1.0 + 1e-9  # times a reach: what is listed for it, rounding included
+MARGIN = 4.0  # spacings, around all samples, that faces of their films are within
 RIM = 0.2  # spacings, from a particle of the film to the mean of its neighbours, beyond which
 # it stands at the rim
 
@@ -45,7 +46,7 @@ class Films:
 
 
 class Faces(NamedTuple):
-    """All samples, and the walls' outermost layer, of all ranks and in their order."""
+    """All samples, and the walls' outermost layer near them, of all ranks and in their order."""
 
     position: Array  # (n, 3) m
     normal: Array  # (n, 3) m, to the mirror point
@@ -61,16 +62,37 @@ def find_faces(state: State, ranks: Ranks, spacing: float) -> Faces:
     As the neighbour lists do, it goes by where all was when they were made, so that a state that
     is loaded finds the same films.
     """
-    position = state.reference[state.fluid : state.particles]
-    normal = state.reference[state.particles :] - position
+    places, is_sample = state.reference[state.fluid : state.particles], state.sample >= 0
+    ends = _ends(places[is_sample], ranks)
+    around = np.flatnonzero(_is_between(places, ends, MARGIN * spacing))
+    position = places[around]
+    normal = state.reference[state.particles + around] - position
     outermost = np.einsum("nd,nd->n", normal, normal) < (OUTERMOST * spacing) ** 2
-    rows = np.flatnonzero(outermost | (state.sample >= 0))
-    numbers = np.column_stack([outermost[rows], state.sample[rows], rows])
+    chosen = outermost | is_sample[around]
+    rows = around[chosen]
+    numbers = np.column_stack([outermost[chosen], state.sample[rows], rows])
     numbers = np.column_stack([numbers, np.full(len(rows), ranks.rank)]).astype(float)
-    columns = np.concatenate([position[rows], normal[rows], numbers], axis=1)
+    columns = np.concatenate([position[chosen], normal[chosen], numbers], axis=1)
     of_all = ranks.all_rows(ranks.boundary_keys(state)[rows], columns)
     outer, sample, row, rank = of_all[:, 6:].T.astype(np.int64)
     return Faces(of_all[:, :3].copy(), of_all[:, 3:6].copy(), outer > 0, sample, rank, row)
+
+
+def _ends(points: Array, ranks: Ranks) -> Array:
+    """Lowest and highest corner (2, 3) m of points (n, 3) m of all ranks."""
+    both = np.concatenate([-points, points], axis=1)
+    greatest = np.array(ranks.greatest(*both.max(axis=0, initial=-np.inf).tolist()))
+    return np.array([-greatest[:3], greatest[3:]])
+
+
+def _is_between(points: Array, ends: Array, margin: float) -> NDArray[np.bool_]:
+    """Which points (n, 3) m are between two corners (2, 3) m, or nearer to them than a margin."""
+    low, high = ends[0] - margin, ends[1] + margin
+    is_inside = np.ones(len(points), bool)
+    for axis in range(3):  # a column after the other takes half the time
+        column = points[:, axis]
+        is_inside &= (column > low[axis]) & (column < high[axis])
+    return is_inside
 
 
 def find_films(faces: Faces, samples: Samples, spacing: float, constants: Constants) -> Films:
@@ -79,10 +101,8 @@ def find_films(faces: Faces, samples: Samples, spacing: float, constants: Consta
     rows = np.flatnonzero(sample >= 0)
     rows = rows[np.argsort(sample[rows])]
     first = rows[outermost[rows]]
-    low, high = position[first].min(axis=0), position[first].max(axis=0)
-    margin = 4.0 * spacing
-    around = ((position > low - margin) & (position < high + margin)).all(axis=1)
-    second = np.flatnonzero(outermost & around)
+    ends = np.array([position[first].min(axis=0), position[first].max(axis=0)])
+    second = np.flatnonzero(outermost & _is_between(position, ends, MARGIN * spacing))
     owner = np.where(sample >= 0, samples.body[np.maximum(sample, 0)], -1.0)
     partner = np.full(len(first), -1)
     furthest = BEYOND * spacing * float(np.hypot(WIDEST + OUTERMOST, ASIDE))

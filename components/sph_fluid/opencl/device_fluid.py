@@ -208,8 +208,9 @@ class DeviceFluid(Component):
 
     def check(self) -> None:
         """Refuse a particle whose velocity is not finite."""
-        self._get()
-        self.host.check()
+        if self._is_read or not self.stepping.rows.is_finite():
+            self._get()
+            self.host.check()
 
     def give(self, wanted: Keys) -> Fields:
         """Copy out the mean force of the last step on each sample, and what gauges read now."""

@@ -39,7 +39,7 @@ class DeviceState:
         self.cells = Cells(queue, kernels, by_rows)
         self._survey, self._gather = kernels.survey, kernels.gather
         self._note_places, self._look_from = kernels.note_places, kernels.look_from
-        self._place = kernels.place_samples
+        self._place, self._find_not_finite = kernels.place_samples, kernels.find_not_finite
         walls = params.boundary.tank
         low, high = walls or ((0.0,) * 3, (0.0,) * 3)
         self._walls = np.int32(walls is not None), np.array([*low, 0.0]), np.array([*high, 0.0])
@@ -84,14 +84,17 @@ class DeviceState:
         if len(state.reference):
             state.reference = self.reference.get()
 
-    def get_boundary(self, state: State) -> None:
-        """Copy the rows of the boundary into a host's state; those of the fluid are left."""
-        for name in OF_ALL:
-            if self.arrays[name].shape[0]:
-                getattr(state, name)[self.split :] = self.arrays[name].get(self.split)
+    def follow_boundary(self, state: State) -> None:
+        """Bring the boundary of a host's state into the order of the device.
+
+        Of positions, velocities and densities those of samples alone; `get` brings the others.
+        """
+        row = state.sample_rows()
         for name in OF_BOUNDARY:
             setattr(state, name, self.arrays[name].get())
         state.reference[self.split :] = self.reference.get(self.split)
+        for array in (state.position_density, state.velocity_pressure):
+            array[state.sample_rows()] = array[row]
 
     def make_acceleration(self) -> bool:
         """Make room for accelerations (fluid, 3) m/s2; False where they are there."""
@@ -124,11 +127,16 @@ class DeviceState:
         least = self.cells.greatest(self._least, self.split)
         return -least[:3], greatest[:3], float(greatest[3]), bool(least[3] > 0.0)
 
+    def is_finite(self) -> bool:
+        """Whether all velocities and pressures of the fluid are finite; overwrites `extremes`."""
+        split = np.int32(self.split)
+        run(self.queue, self._find_not_finite, self.split, self.velocity, split, self.extremes)
+        return not self.cells.greatest(self.extremes, self.split).any()
+
     def sort(self, low: np.ndarray, high: np.ndarray, state: State) -> None:
         """Bring near rows together and list neighbours; nothing may be outside of the tank.
 
-        Where there are samples, the rows of the boundary are copied into the host's state, which
-        then has them in the order of the device.
+        Where there are samples, the boundary of the host's state follows the order of the device.
         """
         grid = grid_between(low, high, self.reach)
         split, boundary_count = self.split, self.count - self.split
@@ -149,7 +157,7 @@ class DeviceState:
         state.exit_face[:] = 0
         state.reference, state.moved = np.zeros((rows, 3)), 0.0
         if self.samples:
-            self.get_boundary(state)
+            self.follow_boundary(state)
             self.row.put(state.sample_rows())
         self._list(self.position, grid, fluid_key, boundary_key)
 
@@ -208,8 +216,8 @@ class DeviceState:
         return self.count + np.arange(len(row)) if self.mirrored else row
 
     def lengths(self) -> Lists:
-        """How many neighbours each row has, as lists of the host without the neighbours."""
-        middle, end = (
-            array.get().astype(np.int64) for array in (self.lists.middle, self.lists.end)
-        )
-        return Lists(np.zeros(len(end), np.int64), middle, end, np.zeros(0, np.int32))
+        """How many neighbours samples have, as lists of the host without the neighbours."""
+        first = max(self.first_listed, self.split)
+        end = np.zeros(self.lists.end.shape[0], np.int64)
+        end[first:] = self.lists.end.get(first)
+        return Lists(np.zeros(len(end), np.int64), end, end, np.zeros(0, np.int32))

@@ -16,6 +16,14 @@ __kernel void survey(
     least[i] = (double4)(-r.xyz, walled && !inside);
 }
 
+/* Which rows of the fluid have a velocity, or p/rho^2, that is not finite. */
+__kernel void find_not_finite(
+    __global const double4 *velocity, int split, __global double4 *extremes)
+{
+    const int i = get_global_id(0);
+    if (i < split) extremes[i] = all(isfinite(velocity[i])) ? 0.0 : 1.0;
+}
+
 /* Copy `count` rows of `width` words in the order of keys, to rows from `first` on. Keys count
    rows of all particles; those of the array begin at `base`. */
 __kernel void gather(
