@@ -1,4 +1,4 @@
-"""Laws of one pair: the seven-root force, a force from a table, and damping along the pair.
+"""Laws of one pair and of one point: forces, damping, a drive, baths, collisions.
 
 F > 0 is attraction. Kernels take F over the distance, as a function of the squared distance.
 """
@@ -6,6 +6,7 @@ F > 0 is attraction. Kernels take F over the distance, as a function of the squa
 import math
 from typing import Any
 
+import numpy as np
 from numba import njit
 from numba.extending import overload
 
@@ -89,20 +90,81 @@ def _pair_energy(law, square):  # type: ignore[no-untyped-def]
     return of_roots
 
 
-def damping_weight(damping: Any, r: float) -> float:
-    """Force [N s/m] of a pair at a distance r [m] per speed at which it opens."""
-    raise NotImplementedError("it is called by compiled functions only")
-
-
-@overload(damping_weight, inline="always")
-def _damping_weight(damping, r):  # type: ignore[no-untyped-def]
-    return weight_of_damping
-
-
+@njit(inline="always")
 def weight_of_damping(damping, r):  # type: ignore[no-untyped-def]
     """Coefficient of damping along a pair [kg/s] at a distance [m]."""
     u = (r * damping.per_metre - damping.begin) * damping.per_width
     return damping.coefficient * falling_step(u)
+
+
+@njit(inline="always")
+def damping_over_distance(weight, opening, square):  # type: ignore[no-untyped-def]
+    """Force [N/m] of a damping [kg/s] over the distance; ṙ r [m2/s], squared distance [m2]."""
+    return weight * opening / square
+
+
+@njit(inline="always")
+def nearest_image(x, side, per_side):  # type: ignore[no-untyped-def]
+    """Difference of coordinates [m] to the nearest image; of an open side both numbers are 0."""
+    return x - side * np.rint(x * per_side)
+
+
+@njit(inline="always")
+def tether_force(tether, position, rest):  # type: ignore[no-untyped-def]
+    """Force [N] along an axis towards the place where a point is held, with the sign of a pull."""
+    return tether * (position - rest)
+
+
+@njit(inline="always")
+def prescribed_motion(driven, time):  # type: ignore[no-untyped-def]
+    """Change [m] of the distance of a driven pair at a time [s], its velocity, its acceleration."""
+    moved = driven.amplitude * math.sin(driven.frequency * time)
+    speed = driven.amplitude * driven.frequency * math.cos(driven.frequency * time)
+    turning = driven.frequency * driven.frequency
+    push = -driven.amplitude * turning * math.sin(driven.frequency * time)
+    return moved, speed, push
+
+
+@njit(inline="always")
+def driven_places(driven, moved, first, second):  # type: ignore[no-untyped-def]
+    """Coordinates [m] of a driven pair along its axis, from those that it drifted to."""
+    if driven.is_free:
+        middle = 0.5 * (first + second)
+        apart = 0.5 * (driven.distance + moved)
+        return middle + apart, middle - apart
+    first = driven.rest_first + driven.share_first * moved
+    return first, driven.rest_second - driven.share_second * moved
+
+
+@njit(inline="always")
+def driven_rates(driven, rate, first, second):  # type: ignore[no-untyped-def]
+    """Velocities of a driven pair along its axis, or accelerations; `rate` is of the distance."""
+    if driven.is_free:
+        middle = 0.5 * (first + second)
+        return middle + 0.5 * rate, middle - 0.5 * rate
+    return driven.share_first * rate, -driven.share_second * rate
+
+
+@njit(inline="always")
+def bath_factors(rate, temperature, mass, boltzmann, dt):  # type: ignore[no-untyped-def]
+    """Share of a velocity that a bath leaves in a time [s], and width [m/s] of what it adds."""
+    decay = math.exp(-rate * dt)
+    return decay, math.sqrt(boltzmann * temperature / mass * (1.0 - decay * decay))
+
+
+@njit(inline="always")
+def heat_gained(mass, velocity, before):  # type: ignore[no-untyped-def]
+    """Kinetic energy [J] that a point gained along an axis."""
+    return 0.5 * mass * (velocity * velocity - before * before)
+
+
+@njit(inline="always")
+def half_turn(relative, direction):  # type: ignore[no-untyped-def]
+    """Half the change (3,) m/s of a relative velocity that turns into a direction (3,)."""
+    x, y, z = relative
+    u, v, w = direction
+    speed = math.sqrt(x * x + y * y + z * z)
+    return 0.5 * (speed * u - x), 0.5 * (speed * v - y), 0.5 * (speed * w - z)
 
 
 @njit(**EXACT)

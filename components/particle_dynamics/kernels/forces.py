@@ -9,9 +9,11 @@ from numba.extending import overload
 from numpy.typing import NDArray
 
 from quintet.components.particle_dynamics.laws import (
-    damping_weight,
+    damping_over_distance,
     force_over_distance,
+    nearest_image,
     pair_energy,
+    weight_of_damping,
 )
 from quintet.components.particle_dynamics.state import Whole
 from quintet.components.shared.numba_options import EXACT
@@ -39,7 +41,8 @@ def _opposed(damping, opening, k, square):  # type: ignore[no-untyped-def]
         return lambda damping, opening, k, square: 0.0
 
     def along(damping, opening, k, square):  # type: ignore[no-untyped-def]
-        push = damping_weight(damping, math.sqrt(square)) * opening[k] / square
+        weight = weight_of_damping(damping, math.sqrt(square))
+        push = damping_over_distance(weight, opening[k], square)
         opening[k] *= push
         return push
 
@@ -56,7 +59,7 @@ def _minimum_image(period, axis, x):  # type: ignore[no-untyped-def]
     if isinstance(period, types.NoneType):
         return lambda period, axis, x: x
     # Lengths of open sides are 0, which leaves x unchanged.
-    return lambda period, axis, x: x - period[axis] * np.rint(x * period[axis + 3])
+    return lambda period, axis, x: nearest_image(x, period[axis], period[axis + 3])
 
 
 @njit(**EXACT)
@@ -141,7 +144,7 @@ def damp_all_pairs(
             v = velocity[i, 1] - velocity[j, 1]
             w = velocity[i, 2] - velocity[j, 2]
             opening = u * x + v * y + w * z
-            push = coefficient * opening / (x * x + y * y + z * z)
+            push = damping_over_distance(coefficient, opening, x * x + y * y + z * z)
             power += push * opening
             force[i, 0] -= push * x
             force[i, 1] -= push * y

@@ -13,6 +13,15 @@ from quintet.components.particle_dynamics.kernels.generator import (
     pass_over,
     uniform,
 )
+from quintet.components.particle_dynamics.laws import (
+    bath_factors,
+    driven_places,
+    driven_rates,
+    half_turn,
+    heat_gained,
+    prescribed_motion,
+    tether_force,
+)
 from quintet.components.particle_dynamics.state import (
     PULL_FIRST,
     PULL_SECOND,
@@ -36,19 +45,9 @@ EARLY = 0.6  # of the skin: distance at which lists are rebuilt; the rest covers
 def constrain(driven: Driven, time: float, position: Array, velocity: Array) -> None:
     """Set the prescribed motion of the driven pair along its axis, at a time [s]."""
     i, j, k = driven.first, driven.second, driven.axis
-    moved = driven.amplitude * math.sin(driven.frequency * time)
-    speed = driven.amplitude * driven.frequency * math.cos(driven.frequency * time)
-    if driven.is_free:
-        middle = 0.5 * (position[i, k] + position[j, k])
-        position[i, k] = middle + 0.5 * (driven.distance + moved)
-        position[j, k] = middle - 0.5 * (driven.distance + moved)
-        middle = 0.5 * (velocity[i, k] + velocity[j, k])
-        velocity[i, k], velocity[j, k] = middle + 0.5 * speed, middle - 0.5 * speed
-    else:
-        position[i, k] = driven.rest_first + driven.share_first * moved
-        position[j, k] = driven.rest_second - driven.share_second * moved
-        velocity[i, k] = driven.share_first * speed
-        velocity[j, k] = -driven.share_second * speed
+    moved, speed, _ = prescribed_motion(driven, time)
+    position[i, k], position[j, k] = driven_places(driven, moved, position[i, k], position[j, k])
+    velocity[i, k], velocity[j, k] = driven_rates(driven, speed, velocity[i, k], velocity[j, k])
 
 
 @njit(**EXACT)
@@ -56,18 +55,9 @@ def drive(model: Model, time: float, acceleration: Array, energies: Array) -> No
     """Write the prescribed acceleration of the driven pair, and the forces [N] of the drive."""
     driven = model.driven
     i, j, k = driven.first, driven.second, driven.axis
-    turning = driven.frequency * driven.frequency
-    aim = -driven.amplitude * turning * math.sin(driven.frequency * time)
+    _, _, push = prescribed_motion(driven, time)
     first, second = acceleration[i, k], acceleration[j, k]
-    if driven.is_free:
-        middle = 0.5 * (first + second)
-        acceleration[i, k], acceleration[j, k] = (
-            middle + 0.5 * aim,
-            middle - 0.5 * aim,
-        )
-    else:
-        acceleration[i, k] = driven.share_first * aim
-        acceleration[j, k] = -driven.share_second * aim
+    acceleration[i, k], acceleration[j, k] = driven_rates(driven, push, first, second)
     energies[PULL_FIRST] = model.mass * (acceleration[i, k] - first)
     energies[PULL_SECOND] = model.mass * (acceleration[j, k] - second)
 
@@ -89,12 +79,12 @@ def exchange_with_baths(
     velocity = state.velocity
     for b in range(bathed.point.shape[0]):
         pass_over(state.generator, DRAWN * bathed.passed[b])
-        i, decay = bathed.point[b], math.exp(-bathed.rate[b] * dt)
-        width = math.sqrt(boltzmann * state.temperature[b] / mass * (1.0 - decay * decay))
+        i, temperature = bathed.point[b], state.temperature[b]
+        decay, width = bath_factors(bathed.rate[b], temperature, mass, boltzmann, dt)
         for k in range(3):
-            old = velocity[i, k]
-            velocity[i, k] = decay * old + width * normal(state.generator)
-            state.heat[b] += 0.5 * mass * (velocity[i, k] * velocity[i, k] - old * old)
+            before = velocity[i, k]
+            velocity[i, k] = decay * before + width * normal(state.generator)
+            state.heat[b] += heat_gained(mass, velocity[i, k], before)
     pass_over(state.generator, DRAWN * bathed.passed[-1])
 
 
@@ -112,9 +102,7 @@ def collide(bonds: Array, expected: float, velocity: Array, generator: Generator
         x = velocity[i, 0] - velocity[j, 0]
         y = velocity[i, 1] - velocity[j, 1]
         z = velocity[i, 2] - velocity[j, 2]
-        speed = math.sqrt(x * x + y * y + z * z)
-        u, v, w = direction(generator)
-        x, y, z = 0.5 * (speed * u - x), 0.5 * (speed * v - y), 0.5 * (speed * w - z)
+        x, y, z = half_turn((x, y, z), direction(generator))
         velocity[i, 0] += x
         velocity[i, 1] += y
         velocity[i, 2] += z
@@ -137,7 +125,8 @@ def accelerate(
     for b in range(bathed.point.shape[0]):
         i = bathed.point[b]
         for k in range(3):
-            acceleration[i, k] -= bathed.tether[b] * (position[i, k] - bathed.rest[b, k])
+            place, rest = position[i, k], bathed.rest[b, k]
+            acceleration[i, k] -= tether_force(bathed.tether[b], place, rest)
     inverse = 1.0 / model.mass
     for i in range(acceleration.shape[0]):
         for k in range(3):
