@@ -38,5 +38,9 @@ MANIFEST = Manifest(
     plan=plan,
     bench="quintet.components.particle_dynamics.bench:cases",
     conform="quintet.components.particle_dynamics.conform:cases",
+    opencl="quintet.components.particle_dynamics.component:ParticleLattice",
+    opencl_limits=(
+        "quintet.components.particle_dynamics.opencl.refusal:refuse_what_needs_the_processor"
+    ),
 )
 SUCCESSORS = ("particle_lattice", "particle_spheres")  # of the kind particle_dynamics

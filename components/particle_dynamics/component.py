@@ -34,7 +34,8 @@ class ParticleLattice(Component):
     params : ParticleLatticeParams
         Points, forces, and what holds and heats them.
     resources : Resources
-        With a communicator of several ranks each steps its share of the points.
+        With a communicator of several ranks each steps its share of the points; with a device the
+        points are there, and their arrays are copied to the host when they are read.
     """
 
     Params: type[ParticleLatticeParams] = ParticleLatticeParams
@@ -62,12 +63,12 @@ class ParticleLattice(Component):
     @property
     def state(self) -> State:
         """What moves: of one rank all points, of several its points and copies of others."""
-        return self.rows.state
+        return self.rows.read()
 
     @property
     def time(self) -> float:
         """Time [s] of the present state."""
-        return float(self.state.energies[TIME])
+        return float(self.rows.state.energies[TIME])
 
     def describe(self) -> Fields:
         """State where the points of the wall are."""
@@ -88,7 +89,7 @@ class ParticleLattice(Component):
         temperature = fields.get("wall_temperature.temperature")
         if temperature is not None:
             here = temperature[self.wall.of_wall]
-            self.state.temperature[self.wall.here] = np.maximum(here, 0.0)
+            self.rows.state.temperature[self.wall.here] = np.maximum(here, 0.0)
 
     def step(self, dt: float) -> None:
         """Advance by exactly dt [s], in equal steps of at most the stable one."""
@@ -96,7 +97,7 @@ class ParticleLattice(Component):
         # Without substeps a longer step is the scene's choice.
         longest = math.inf if self.params.substeps == 1 else self.substep
         steps = max(1, math.ceil(dt / longest * (1.0 - 1e-9)))
-        heat = self.state.heat.copy()
+        heat = rows.state.heat.copy()
         remaining = steps
         while remaining:
             done = rows.advance(remaining, dt / steps)
@@ -107,14 +108,15 @@ class ParticleLattice(Component):
             self.losses.unchecked += done
             if remaining or rows.needs_lists():
                 rows.make_lists()
-        self.state.flow[:] = (heat - self.state.heat) / dt
+        rows.state.flow[:] = (heat - rows.state.heat) / dt  # new lists may come with a new state
         self.budget.note()
         if self.losses.unchecked >= CHECKED:
             self._check()
 
     def check(self) -> None:
         """Refuse a point whose velocity or kinetic energy is not finite."""
-        diagnostics.check(self.state, self.rows.ids, self.rows.owned)
+        state = self.rows.read("position", "velocity", "kinetic")
+        diagnostics.check(state, self.rows.ids, self.rows.owned)
 
     def _check(self) -> None:
         """Find lost points, broken bonds and missing energy; stop if the scene requires it."""

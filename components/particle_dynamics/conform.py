@@ -1,5 +1,6 @@
 """What the laws of the contract are tried on: small lattices, still, driven, heated, coupled."""
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -17,6 +18,9 @@ WALL = 4  # points
 
 def cases() -> tuple[ConformCase, ...]:
     """A lattice at rest, one that is driven and damped, one in baths with a coupled wall."""
+    # Loads pyopencl where it is installed; these cases alone ask for it.
+    from quintet.components.shared.opencl.devices import is_any_there
+
     driven = {
         **LATTICE,
         "damping": {"coefficient": 3e-4},
@@ -37,23 +41,36 @@ def cases() -> tuple[ConformCase, ...]:
     }
     other = {**wall, "lowest": [0.03, 0.0, 0.0], "highest": [0.03, 0.01, 0.01]}
     heated = {**LATTICE, "baths": [{**wall, "coupled": True}, other], "collision_rate": 100.0}
-    still = {"wall_temperature.temperature": np.zeros(WALL)}
     warm = {**LATTICE["lattice"], "cells": [6, 6, 6], "periodic": ["x", "y", "z"]}
+    cases_of_devices = (
+        replace(case, name=f"{case.name}, OpenCL", device="opencl")
+        for case in (_driven(driven), _wall(heated))
+        if is_any_there()
+    )
     return (
         ConformCase("lattice", LATTICE, dt=STEP),
-        ConformCase("driven", driven, dt=STEP, still=False),
+        _driven(driven),
         ConformCase(
             "periodic, warm, Yoshida",
             {**LATTICE, "lattice": {**warm, "temperature": 3e-6}, "integrator": "yoshida"},
             dt=STEP,
             still=False,
         ),
-        ConformCase(
-            "wall",
-            heated,
-            rest=still,
-            scale={"wall_temperature.temperature": 3e-6},
-            dt=STEP,
-            smooth=False,  # random forces
-        ),
+        _wall(heated),
+        *cases_of_devices,
+    )
+
+
+def _driven(params: dict[str, Any]) -> ConformCase:
+    return ConformCase("driven", params, dt=STEP, still=False)
+
+
+def _wall(params: dict[str, Any]) -> ConformCase:
+    return ConformCase(
+        "wall",
+        params,
+        rest={"wall_temperature.temperature": np.zeros(WALL)},
+        scale={"wall_temperature.temperature": 3e-6},
+        dt=STEP,
+        smooth=False,  # random forces
     )

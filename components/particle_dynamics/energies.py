@@ -11,6 +11,7 @@ from quintet.components.particle_dynamics.state import TIME, WORK, Bathed, Whole
 from quintet.interfaces.component import Array
 
 if TYPE_CHECKING:
+    from quintet.components.particle_dynamics.opencl.device_rows import DeviceRows
     from quintet.components.particle_dynamics.ranks.several import SeveralRanks
 
 # Of m a² ω², for each point: energies that are rounding, and the least that is audited.
@@ -38,7 +39,7 @@ class EnergyBudget:
     Parameters
     ----------
     params : ParticleLatticeParams
-    rows : OneRank or SeveralRanks
+    rows : OneRank, SeveralRanks or DeviceRows
         The points, at the start.
     bathed : Bathed
         All points in baths.
@@ -51,7 +52,7 @@ class EnergyBudget:
     def __init__(
         self,
         params: ParticleLatticeParams,
-        rows: "OneRank | SeveralRanks",
+        rows: "OneRank | SeveralRanks | DeviceRows",
         bathed: Bathed,
         frequency: float,
         free: int,

@@ -18,6 +18,7 @@ from quintet.interfaces.component import Array, Resources
 from quintet.interfaces.errors import SceneError
 
 if TYPE_CHECKING:
+    from quintet.components.particle_dynamics.opencl.device_rows import DeviceRows
     from quintet.components.particle_dynamics.ranks.several import SeveralRanks
 
 
@@ -121,8 +122,8 @@ def wall_of(bathed: Bathed, baths: tuple[Bath, ...], bathed_here: Whole) -> Wall
 
 def rows_of(
     resources: Resources, params: ParticleLatticeParams, built: Built, state: State, model: Model
-) -> "OneRank | SeveralRanks":
-    """Points as they are stepped: all of them, or the share of this rank."""
+) -> "OneRank | SeveralRanks | DeviceRows":
+    """Points as they are stepped: all of them, here or on a device, or the share of this rank."""
     lattice, communicator = params.lattice, resources.communicator
     terms = Terms(
         law=built.law,
@@ -134,6 +135,11 @@ def rows_of(
         boltzmann=params.boltzmann,
         averaged_from=params.averages.begin,
     )
+    if resources.device != "cpu":
+        # Only a lattice on a device loads pyopencl.
+        from quintet.components.particle_dynamics.opencl.device_rows import DeviceRows
+
+        return DeviceRows(resources, params, state, model, terms)
     if communicator is None or communicator.size == 1:
         return OneRank(state, model, terms)
     if model.literal_damping > 0.0:

@@ -51,3 +51,52 @@ def keep_pairs_of(
         first = last
         begin[i + 1] = k
     return k
+
+
+@njit(**EXACT)
+def count_others(
+    begin: Whole, neighbour: NDArray[np.int32], lower: Whole, others: Whole
+) -> None:  # fmt: skip
+    """Count the points that list each point: those of lower number, and all."""
+    for i in range(lower.shape[0]):
+        for m in range(begin[i], begin[i + 1]):
+            j = neighbour[m]
+            lower[j] += int(i < j)
+            others[j] += 1
+
+
+@njit(**EXACT)
+def write_full_lists(
+    begin: Whole, neighbour: NDArray[np.int32], lower: Whole, row_stride: int, item_stride: int,
+    near: NDArray[np.int32],
+) -> None:  # fmt: skip
+    """Write all neighbours of each point in the order in which `sum_forces` adds their forces.
+
+    Parameters
+    ----------
+    begin, neighbour
+        Of `Pairs`, which have each pair once.
+    lower : (n,) int array
+        Number of points of lower number that list each point; these stand first, then the points
+        that it lists itself, then those of higher number.
+    row_stride, item_stride : int
+        Neighbour k of point i is written to i row_stride + k item_stride.
+    near : (any,) int32 array
+        Written.
+    """
+    count = lower.shape[0]
+    of_lower = np.zeros(count, np.int64)
+    of_higher = np.empty(count, np.int64)
+    for i in range(count):
+        of_higher[i] = lower[i] + begin[i + 1] - begin[i]
+    for i in range(count):
+        for m in range(begin[i], begin[i + 1]):
+            j = neighbour[m]
+            k = lower[i] + m - begin[i]
+            near[i * row_stride + k * item_stride] = j
+            if i < j:
+                near[j * row_stride + of_lower[j] * item_stride] = i
+                of_lower[j] += 1
+            else:
+                near[j * row_stride + of_higher[j] * item_stride] = i
+                of_higher[j] += 1

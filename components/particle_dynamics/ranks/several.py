@@ -105,6 +105,10 @@ class SeveralRanks:
         """Rows of this rank's points."""
         return self._layout.owned
 
+    def read(self, *names: str) -> State:
+        """State of this rank's points with some arrays as they are now, by default all."""
+        return self.state
+
     def reduced(self, built: Built) -> Built:
         """What the lattice was built of, as far as this rank needs it."""
         nothing = built.start[:0].copy()

@@ -8,6 +8,7 @@ import numpy as np
 
 from quintet.components.shared.float_bits import bits_of, number_of
 from quintet.components.shared.opencl.types import FLAG, INT, REAL, Type
+from quintet.components.shared.wrapped_integers import shifted_down, wrapped_product, wrapped_sum
 
 _ONE = "sqrt exp log log10 log1p expm1 sin cos tan sinh cosh tanh cbrt".split()
 _OF_NUMPY = {"asin": "arcsin", "acos": "arccos", "atan": "arctan"}
@@ -25,10 +26,14 @@ SCALAR: dict[Any, tuple[str, tuple[Type, ...], Type]] = {
     np.power: ("pow", (REAL, REAL), REAL),
     np.floor: ("floor", (REAL,), REAL),
     np.ceil: ("ceil", (REAL,), REAL),
+    np.rint: ("rint", (REAL,), REAL),
     np.isnan: ("isnan", (REAL,), FLAG),
     np.isfinite: ("isfinite", (REAL,), FLAG),
     bits_of: ("as_whole", (REAL,), INT),
     number_of: ("as_real", (INT,), REAL),
+    wrapped_sum: ("wrapped_sum", (INT, INT), INT),
+    wrapped_product: ("wrapped_product", (INT, INT), INT),
+    shifted_down: ("shifted_down", (INT, INT), INT),
 }
 for _name in _ONE:
     SCALAR[getattr(math, _name)] = SCALAR[getattr(np, _name)] = (_name, (REAL,), REAL)

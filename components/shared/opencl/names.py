@@ -9,7 +9,7 @@ RESERVED = frozenset(
     register restrict return sampler_t short signed size_t sizeof static struct switch typedef
     uchar uint ulong union unsigned ushort void volatile while bool true false none
     sqrt exp exp2 log log2 log10 log1p expm1 pow sin cos tan asin acos atan atan2 sinh cosh tanh
-    fabs floor ceil fmin fmax hypot copysign cbrt fmod trunc isnan isinf isfinite erf
+    fabs floor ceil rint fmin fmax hypot copysign cbrt fmod trunc isnan isinf isfinite erf
     min max abs dot cross distance length normalize sign step mix clamp radians degrees""".split()
 )
 

@@ -18,6 +18,11 @@ static long max_long(long a, long b) { return b > a ? b : a; }
 static long min_long(long a, long b) { return b < a ? b : a; }
 static long abs_long(long a) { return a < 0 ? -a : a; }
 
+/* Of 64 bits that wrap around: see shared/wrapped_integers.py. */
+static long wrapped_sum(long a, long b) { return (long)((ulong)a + (ulong)b); }
+static long wrapped_product(long a, long b) { return (long)((ulong)a * (ulong)b); }
+static long shifted_down(long a, long b) { return (long)((ulong)a >> b); }
+
 /* Quotients and remainders of Python: rounded down; 0 over 0, as numpy has it. */
 static long floor_divide_long(long a, long b) {
     if (b == 0) return 0;

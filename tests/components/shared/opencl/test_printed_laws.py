@@ -30,7 +30,9 @@ from quintet.components.fe_plate import laws as plate
 from quintet.components.meshless_gas.laws import fluxes, limiters, transport
 from quintet.components.particle_dynamics import laws as lattice
 from quintet.components.particle_dynamics.coefficients import PairDamping, SevenRoots
+from quintet.components.particle_dynamics.kernels import generator
 from quintet.components.particle_dynamics.spheres import laws as spheres
+from quintet.components.particle_dynamics.state import Driven
 from quintet.components.shared import elementary, rotations, smoothing
 from quintet.components.shared.contact import laws as contact
 from quintet.components.shared.materials import equation_of_state as state
@@ -73,6 +75,9 @@ METAL = Solid(
 STRAINED = (Between(-0.1, 0.3), Between(0.0, 1e5), Between(1e6, 1e9), METAL)
 PLACES = (1.0, 1.2, 1.4, 1.6, 1.7, 2.0, 2.2)
 ROOTS = SevenRoots(1.5, 10.0, PLACES, 1.0, (1.0,) * 3, 1.8, 5.0, 2.0, None, None)
+HELD = Driven(0, 1, 2, ANY, ANY, LARGE, 0.5, 0.5, False, ANY, ANY)
+FREE = HELD._replace(is_free=True)
+COUNTERS = (1, 2**62, -(2**63))
 GAS = transport.Transport(1.7e-5, 273.0, 110.0, 1400.0, 287.0)
 GRID = Grid(-1.0, -1.0, -1.0, 7.3, 9, 11, 13, 1, 2, 0)
 MODULUS = Between(1e9, 1e11)
@@ -172,6 +177,21 @@ LAWS = [
     Law(lattice.falling_step, (Between(-0.5, 1.5),)),
     Law(lattice.force_of_roots, (ROOTS, Between(0.005, 0.06))),
     Law(lattice.weight_of_damping, (PairDamping(2.0, 10.0, 1.0, 3.0), PART)),
+    Law(lattice.damping_over_distance, (LARGE, ANY, PART)),
+    Law(lattice.nearest_image, (Between(-3.0, 3.0), 1.7, 1.0 / 1.7)),
+    Law(lattice.tether_force, (LARGE, ANY, ANY)),
+    Law(lattice.prescribed_motion, (FREE, Between(0.0, 9.0)), ulp=1, cancels=True),
+    *(Law(lattice.driven_places, (pair, ANY, ANY, ANY), name=f" {k}")
+      for k, pair in enumerate((HELD, FREE))),
+    *(Law(lattice.driven_rates, (pair, ANY, ANY, ANY), name=f" {k}")
+      for k, pair in enumerate((HELD, FREE))),
+    Law(lattice.bath_factors, (LARGE, LARGE, LARGE, LARGE, PART), ulp=3, cancels=True),
+    Law(lattice.heat_gained, (LARGE, ANY, ANY)),
+    Law(lattice.half_turn, (vector(1.0), vector(1.0))),
+    *(Law(generator.counter_after, (counter, 7), name=f" {counter}") for counter in COUNTERS),
+    *(Law(generator.uniform_of, (counter,), name=f" {counter}") for counter in COUNTERS),
+    Law(generator.normal_of, (PART, PART), ulp=2, cancels=True),
+    Law(generator.direction_of, (PART, PART), ulp=1, cancels=True),
     Law(spheres.unit, (vector(1.0), LARGE)),
     Law(spheres.past, (vector(1.0), vector(1.0), vector(1.0), PART)),
     Law(spheres.time_since_contact, (vector(0.5), vector(1.0), vector(0.1), Between(1.0, 2.0))),
@@ -193,15 +213,14 @@ SMOOTHING = {
 LAW_FILES = SMOOTHING | {module for module in MODULES if module.__name__.split(".")[-1] == "laws"}
 # Laws that cannot be printed, as they read or write arrays, or choose a law by its type.
 NOT_PURE = {
-    "change_stiffness", "friction", "force_over_distance", "pair_energy", "damping_weight",
-    "force", "energy",
+    "change_stiffness", "friction", "force_over_distance", "pair_energy", "force", "energy",
     # Called once, on the host.
     "normalisation", "smoothing",
 }  # fmt: skip
 
 
 # Solvers that compute on devices today; the laws of others are tried before a release.
-ON_DEVICES = ("sph_fluid", "shared.smoothing", "shared.search")
+ON_DEVICES = ("sph_fluid", "particle_dynamics", "shared.smoothing", "shared.search")
 
 
 def solver(law):

@@ -1,0 +1,46 @@
+"""Kernels that are run again and again with nearly the same arguments."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from quintet.components.shared.opencl.arrays import GROUP, run
+from quintet.components.shared.opencl.devices import opencl
+
+
+class Launch:
+    """A kernel, and the arguments that it had last: setting one takes as long as many rows.
+
+    Parameters
+    ----------
+    queue : pyopencl.CommandQueue
+    kernel : pyopencl.Kernel
+        Used here alone.
+    rows : int
+        The kernel must pass over work items beyond them.
+    *fixed : DeviceArray, number or array of one struct
+        Its last arguments, the same in each run until `fix` replaces them.
+    """
+
+    def __init__(self, queue: Any, kernel: Any, rows: int, *fixed: Any) -> None:
+        self._queue, self._kernel, self._rows = queue, kernel, rows
+        self._items, self._enqueue = -(-rows // GROUP) * GROUP, opencl().enqueue_nd_range_kernel
+        self.fix(*fixed)
+
+    def fix(self, *fixed: Any) -> None:
+        """Replace the last arguments."""
+        self._fixed = fixed
+        self._last: list[bytes] | None = None  # the first arguments of the last run
+
+    def run(self, *varying: np.generic | NDArray[Any]) -> None:
+        """Run the kernel; its first arguments are numbers, vectors and structs."""
+        values = [argument.tobytes() for argument in varying]
+        if self._last is None:
+            run(self._queue, self._kernel, self._rows, *varying, *self._fixed)
+        elif self._rows:
+            for place, argument in enumerate(varying):
+                if values[place] != self._last[place]:
+                    self._kernel.set_arg(place, argument)
+            self._enqueue(self._queue, self._kernel, (self._items,), (GROUP,))
+        self._last = values
