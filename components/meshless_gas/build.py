@@ -18,15 +18,15 @@ from quintet.components.meshless_gas.clouds.cloud import (
 )
 from quintet.components.meshless_gas.clouds.layers import Sides
 from quintet.components.meshless_gas.exact_states import states_at
-from quintet.components.meshless_gas.kernels.boundaries import (
+from quintet.components.meshless_gas.kernels.boundaries import write_weights
+from quintet.components.meshless_gas.kernels.motion import write_conservative
+from quintet.components.meshless_gas.kernels.outflows import Outflows, outflows
+from quintet.components.meshless_gas.laws.boundaries import (
     BACK_PRESSURE,
     PATCH_COLUMNS,
     TOTAL_PRESSURE,
     TOTAL_TEMPERATURE,
-    write_weights,
 )
-from quintet.components.meshless_gas.kernels.motion import write_conservative
-from quintet.components.meshless_gas.kernels.outflows import Outflows, outflows
 from quintet.components.meshless_gas.laws.transport import Transport
 from quintet.components.meshless_gas.layered_clouds import layered_cloud
 from quintet.components.meshless_gas.params import MeshlessGasParams

@@ -6,6 +6,14 @@ from typing import Any
 import numpy as np
 from numba import njit
 
+from quintet.components.meshless_gas.laws.states import (
+    change_square,
+    crossing_rate,
+    is_state,
+    primitive_state,
+    sound_speed,
+    staged,
+)
 from quintet.components.shared.numba_options import EXACT, FAST
 
 # Shares of the state at the step's start and of the stage before it, and the weight of the stage
@@ -17,7 +25,7 @@ STAGES = ((0.0, 1.0, 1.0 / 6.0), (0.75, 0.25, 1.0 / 6.0), (1.0 / 3.0, 2.0 / 3.0,
 def write_sound(first: int, last: int, primitive: Any, gamma: float, sound: Any) -> None:
     """Write the speed of sound (n,) m/s of nodes."""
     for i in range(first, last):
-        sound[i] = math.sqrt(gamma * primitive[i, 4] / primitive[i, 0])
+        sound[i] = sound_speed(primitive[i, 0], primitive[i, 4], gamma)
 
 
 @njit(**FAST)
@@ -34,8 +42,7 @@ def write_bounds(
 ) -> float:
     """Write the stable step [s] of each node at a Courant number of 1; return the least.
 
-    Δt_i = 1/Σ_j (max(|v_i·c_ij|, |v_j·c_ij|) + max(a_i, a_j) |c_ij|), velocities in the node's
-    frame.
+    Δt_i = 1/Σ_j of what `crossing_rate` has.
     """
     least = math.inf
     for row in range(first, last):
@@ -43,17 +50,13 @@ def write_bounds(
         fx = fy = fz = 0.0
         if frame is not None:
             fx, fy, fz = frame[i, 0], frame[i, 1], frame[i, 2]
-        u, v, w = primitive[i, 1] - fx, primitive[i, 2] - fy, primitive[i, 3] - fz
+        own = (primitive[i, 1] - fx, primitive[i, 2] - fy, primitive[i, 3] - fz)
         summed = 0.0
         for k in range(neighbours.shape[1]):
             j = np.uintp(neighbours[i, k])
-            x, y, z = coefficients[i, k, 0], coefficients[i, k, 1], coefficients[i, k, 2]
-            carried = abs(u * x + v * y + w * z)
-            other = abs(
-                (primitive[j, 1] - fx) * x + (primitive[j, 2] - fy) * y + (primitive[j, 3] - fz) * z
-            )
-            size = math.sqrt(x * x + y * y + z * z)
-            summed += max(carried, other) + max(sound[i], sound[j]) * size
+            coefficient = (coefficients[i, k, 0], coefficients[i, k, 1], coefficients[i, k, 2])
+            other = (primitive[j, 1] - fx, primitive[j, 2] - fy, primitive[j, 3] - fz)
+            summed += crossing_rate(own, other, coefficient, sound[i], sound[j])
         bounds[i] = 1.0 / summed
         least = min(least, bounds[i])
     return least
@@ -97,18 +100,17 @@ def advance(
         if old == 0.0:
             for q in range(5):
                 start[i, q] = conservative[i, q]
-        r0 = old * start[i, 0] + new * (conservative[i, 0] + dt * residual[i, 0])
-        r1 = old * start[i, 1] + new * (conservative[i, 1] + dt * residual[i, 1])
-        r2 = old * start[i, 2] + new * (conservative[i, 2] + dt * residual[i, 2])
-        r3 = old * start[i, 3] + new * (conservative[i, 3] + dt * residual[i, 3])
-        r4 = old * start[i, 4] + new * (conservative[i, 4] + dt * residual[i, 4])
+        r0 = staged(start[i, 0], conservative[i, 0], residual[i, 0], dt, old, new)
+        r1 = staged(start[i, 1], conservative[i, 1], residual[i, 1], dt, old, new)
+        r2 = staged(start[i, 2], conservative[i, 2], residual[i, 2], dt, old, new)
+        r3 = staged(start[i, 3], conservative[i, 3], residual[i, 3], dt, old, new)
+        r4 = staged(start[i, 4], conservative[i, 4], residual[i, 4], dt, old, new)
         conservative[i, 0], conservative[i, 1], conservative[i, 2] = r0, r1, r2
         conservative[i, 3], conservative[i, 4] = r3, r4
-        u, v, w = r1 / r0, r2 / r0, r3 / r0
-        p = (gamma - 1.0) * (r4 - 0.5 * (r1 * u + r2 * v + r3 * w))
-        primitive[i, 0], primitive[i, 1], primitive[i, 2] = r0, u, v
+        r, u, v, w, p = primitive_state(r0, r1, r2, r3, r4, gamma)
+        primitive[i, 0], primitive[i, 1], primitive[i, 2] = r, u, v
         primitive[i, 3], primitive[i, 4] = w, p
-        if not (r0 > 0.0 and p > 0.0 and p < math.inf and r0 < math.inf):
+        if not is_state(r, p):
             wrong = row
     return wrong
 
@@ -120,8 +122,7 @@ def write_changes(
     """Write the squares (m,) of relative changes of densities in the stable steps of nodes."""
     for row in range(first, last):
         i = rows[row]
-        rate = residual[i, 0] * bounds[i] / conservative[i, 0]
-        changes[row] = rate * rate
+        changes[row] = change_square(residual[i, 0], bounds[i], conservative[i, 0])
 
 
 @njit(**EXACT)

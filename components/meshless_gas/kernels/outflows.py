@@ -13,14 +13,11 @@ from numpy.typing import NDArray
 
 from quintet.components.meshless_gas.clouds.cloud import INNER as WITHIN
 from quintet.components.meshless_gas.clouds.cloud import OUTFLOW, Cloud, Whole
-from quintet.components.meshless_gas.kernels.boundaries import BACK_PRESSURE
+from quintet.components.meshless_gas.laws.boundaries import BACK_PRESSURE
+from quintet.components.meshless_gas.laws.outflows import continued, outward_speed, roughness
+from quintet.components.meshless_gas.laws.states import sound_speed
 from quintet.components.shared.numba_options import EXACT, INNER
 from quintet.interfaces.component import Array
-
-LEAST = 0.5  # of the least density and pressure near: what a continued state must keep
-NOISE = 1e-6  # of the pressure, below which differences are none
-ROUGH = 0.25  # share of what pressures near differ by that a plane misses: none is smooth
-CROSSING = 0.2  # Mach numbers about that of sound over which the incoming wave is let go
 
 
 class Outflows(NamedTuple):
@@ -82,41 +79,27 @@ def continue_outflows(
         Which of `patches` nodes belong to.
     primitive : (n, 5) kg/m3, m/s, Pa
         The rows are written.
-
-    References
-    ----------
-    Hirsch, Numerical Computation of Internal and External Flows 2 (1990), section 19.1.
     """
     more, low, high = np.empty(5), np.empty(5), np.empty(5)
     for row in range(rows.shape[0]):
         i = rows[row]
-        sound = math.sqrt(gamma * primitive[i, 4] / primitive[i, 0])
-        out = outward_speed(primitive[i], normals[i])
+        state = five(primitive[i])
+        normal = (normals[i, 0], normals[i, 1], normals[i, 2])
+        sound = sound_speed(state[0], state[4], gamma)
+        out = outward_speed(state, normal)
         if patches[patch[i], BACK_PRESSURE] > 0.0 and abs(out) < sound:
             continue
         write_plane(i, near[row], weights[row], primitive, more, low, high)
-        smooth = 1.0 - roughness(positions, i, near[row], weights[row], primitive) / ROUGH
-        let_waves_out(out, sound, primitive[i, 0], normals[i], more)
-        # Smooth flow may go on beyond what is near; where a shock is there is nothing beyond it.
+        rough = roughness_near(positions, i, near[row], weights[row], primitive)
+        new = continued(state, out, sound, normal, five(more), five(low), five(high), rough)
         for q in range(5):
-            beyond = max(smooth, 0.0) * (high[q] - low[q])
-            least, most = low[q] - beyond, high[q] + beyond
-            if q == 0 or q == 4:
-                least = max(least, LEAST * low[q])
-            primitive[i, q] = min(max(primitive[i, q] + more[q], least), most)
-        back = -outward_speed(primitive[i], normals[i])
-        if back > 0.0 and out > 0.0:  # what leaves nearby does not come back here
-            for d in range(3):
-                primitive[i, 1 + d] -= back * normals[i, d]
+            primitive[i, q] = new[q]
 
 
 @njit(**INNER)
-def outward_speed(state: Any, normal: Any) -> float:
-    """Speed [m/s] against a normal into the gas of a state, or of a change of it."""
-    speed = 0.0
-    for d in range(3):
-        speed -= state[1 + d] * normal[d]
-    return speed
+def five(row: Any) -> tuple[float, float, float, float, float]:
+    """Numbers of a state."""
+    return row[0], row[1], row[2], row[3], row[4]
 
 
 @njit(**INNER)
@@ -137,24 +120,8 @@ def write_plane(
 
 
 @njit(**INNER)
-def let_waves_out(out: float, sound: float, density: float, normal: Any, more: Any) -> None:
-    """Keep of a change (5,) what is carried along, if gas leaves, and what runs against it."""
-    outward = outward_speed(more, normal)
-    carried = min(max(out / (CROSSING * sound), 0.0), 1.0)
-    against = min(max((out / sound - 1.0) / CROSSING, 0.0), 1.0)  # if the gas is faster
-    ahead = 0.5 * (more[4] + density * sound * outward)
-    behind = 0.5 * against * (more[4] - density * sound * outward)
-    push, speed = ahead + behind, (ahead - behind) / (density * sound)
-    more[0] = carried * (more[0] - more[4] / (sound * sound)) + push / (sound * sound)
-    more[4] = push
-    for d in range(3):
-        along = more[1 + d] + outward * normal[d]
-        more[1 + d] = carried * along - speed * normal[d]
-
-
-@njit(**INNER)
-def roughness(positions: Any, i: int, near: Any, weights: Any, primitive: Any) -> float:
-    """Root mean square of what the plane misses pressures by, over the most that they differ by."""
+def roughness_near(positions: Any, i: int, near: Any, weights: Any, primitive: Any) -> float:
+    """Roughness of the pressures that a plane goes through."""
     value, slope = 0.0, np.zeros(3)
     low, high = math.inf, -math.inf
     for k in range(near.shape[0]):
@@ -171,4 +138,4 @@ def roughness(positions: Any, i: int, near: Any, weights: Any, primitive: Any) -
             for d in range(3):
                 off -= slope[d] * (positions[near[k], d] - positions[i, d])
             missed, count = missed + off * off, count + 1
-    return math.sqrt(missed / max(count, 1)) / (high - low + NOISE * high)
+    return roughness(missed, count, low, high)

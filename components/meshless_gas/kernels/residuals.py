@@ -5,7 +5,6 @@
 The 2 is there because the flux is that in the middle of a pair.
 """
 
-import math
 from typing import Any
 
 import numpy as np
@@ -13,11 +12,15 @@ from numba import njit
 
 from quintet.components.meshless_gas.laws.fluxes import (
     FAST_LANEWISE,
-    LEAST,
-    ausmpw,
-    smoothness,
+    half_steps,
+    in_laboratory,
+    kept_share,
+    pair_direction,
+    pair_rates,
+    positive_share,
+    sides,
+    thresholds,
 )
-from quintet.components.meshless_gas.laws.limiters import half_step
 from quintet.components.shared.numba_options import FAST
 
 LANES = 16
@@ -62,7 +65,7 @@ def write_residuals(
     sloped : None or True
         Of None the scheme is of first order.
     limiter : Limiter
-        Of slopes; its class is known when this is compiled.
+        Of slopes; which it is, is known when this is compiled.
     residual : (n, 5) kg/(m3 s), N/m3, W/m3
         Written.
     """
@@ -159,16 +162,21 @@ def change(work, q, lane, across, limiter, threshold, planar):  # type: ignore[n
     if planar is None:
         projected += work[at + LANES] * work[(ARM + 1) * LANES + lane]
     other = work[(OTHER_SLOPE + q) * LANES + lane]
+    return half_steps(limiter, projected, other, across, threshold)
+
+
+@njit(**FAST_LANEWISE)
+def five(work, row, lane):  # type: ignore[no-untyped-def]
+    """Five numbers of a lane, from a row on."""
     return (
-        half_step(limiter, projected - across, across, threshold),
-        half_step(limiter, other - across, across, threshold),
-    )
+        work[row * LANES + lane], work[(row + 1) * LANES + lane], work[(row + 2) * LANES + lane],
+        work[(row + 3) * LANES + lane], work[(row + 4) * LANES + lane],
+    )  # fmt: skip
 
 
 @njit(**FAST_LANEWISE)
 def add_fluxes(planar, sloped, gamma, limiter, work):  # type: ignore[no-untyped-def]
     """Add what the k-th neighbours give to their nodes."""
-    heat = gamma / (gamma - 1.0)
     for lane in range(LANES):
         r, u = work[OWN * LANES + lane], work[(OWN + 1) * LANES + lane]
         w, p = work[(OWN + 3) * LANES + lane], work[(OWN + 4) * LANES + lane]
@@ -180,56 +188,34 @@ def add_fluxes(planar, sloped, gamma, limiter, work):  # type: ignore[no-untyped
         if planar is None:
             v, vr = work[(OWN + 2) * LANES + lane], work[(OTHER + 2) * LANES + lane]
             cy = work[(COEFFICIENT + 1) * LANES + lane]
-        size = math.sqrt(cx * cx + cy * cy + cz * cz)
-        per = 1.0 / max(size, 1e-300)
-        x, y, z = cx * per, cy * per, cz * per
-        rl, ul, vl, wl, pl = r, u, v, w, p
         lowest_i, lowest_j = work[OWN_LEAST * LANES + lane], work[OTHER_LEAST * LANES + lane]
+        own, other = (r, u, v, w, p), (rr, ur, vr, wr, pr)
+        direction = pair_direction(cx, cy, cz)
+        left, right = own, other
         if sloped is not None:
-            closing = max((u - ur) * x + (v - vr) * y + (w - wr) * z, 0.0)
-            ram = min(r, rr) * closing * closing
-            keep = smoothness(lowest_i, lowest_j, p, pr, ram)
-            mean_r, mean_p, threshold = r + rr, p + pr, limiter.threshold
-            eps_r = threshold * mean_r * mean_r
-            eps_p = threshold * mean_p * mean_p
-            a, b = change(work, 0, lane, rr - r, limiter, eps_r, planar)
-            c, d = change(work, 4, lane, pr - p, limiter, eps_p, planar)
-            least_r, least_p = LEAST * min(r, rr), LEAST * min(p, pr)
-            sound = (
-                (r + keep * a > least_r)
-                & (rr - keep * b > least_r)
-                & (p + keep * c > least_p)
-                & (pr - keep * d > least_p)
-            )
-            keep = keep if sound else 0.0
-            rl, rr = r + keep * a, rr - keep * b
-            pl, pr = p + keep * c, pr - keep * d
-            eps_v = threshold * mean_p / mean_r
-            a, b = change(work, 1, lane, ur - u, limiter, eps_v, planar)
-            ul, ur = u + keep * a, ur - keep * b
-            a, b = change(work, 3, lane, wr - w, limiter, eps_v, planar)
-            wl, wr = w + keep * a, wr - keep * b
+            keep = kept_share(own, other, direction, lowest_i, lowest_j)
+            eps_r, eps_p, eps_v = thresholds(own, other, limiter)
+            density = change(work, 0, lane, rr - r, limiter, eps_r, planar)
+            pressure = change(work, 4, lane, pr - p, limiter, eps_p, planar)
+            keep = positive_share(keep, own, other, density, pressure)
+            rl, rr = sides(r, rr, keep, density)
+            pl, pr = sides(p, pr, keep, pressure)
+            along_x = change(work, 1, lane, ur - u, limiter, eps_v, planar)
+            ul, ur = sides(u, ur, keep, along_x)
+            along_z = change(work, 3, lane, wr - w, limiter, eps_v, planar)
+            wl, wr = sides(w, wr, keep, along_z)
+            vl = v
             if planar is None:
-                a, b = change(work, 2, lane, vr - v, limiter, eps_v, planar)
-                vl, vr = v + keep * a, vr - keep * b
-        normal_l, normal_r = ul * x + vl * y + wl * z, ur * x + vr * y + wr * z
-        lowest = min(lowest_i, lowest_j)
-        left, right, pressure = ausmpw(rl, normal_l, pl, rr, normal_r, pr, lowest, gamma)
-        mass = r * (u * x + v * y + w * z)
-        push, factor = pressure - p, -2.0 * size
-        enthalpy = heat * p / r + 0.5 * (u * u + v * v + w * w)
-        enthalpy_l = heat * pl / rl + 0.5 * (ul * ul + vl * vl + wl * wl)
-        enthalpy_r = heat * pr / rr + 0.5 * (ur * ur + vr * vr + wr * wr)
-        work[SUM * LANES + lane] += factor * (left + right - mass)
-        work[(SUM + 1) * LANES + lane] += factor * (left * ul + right * ur - mass * u + push * x)
-        work[(SUM + 3) * LANES + lane] += factor * (left * wl + right * wr - mass * w + push * z)
-        work[(SUM + 4) * LANES + lane] += factor * (
-            left * enthalpy_l + right * enthalpy_r - mass * enthalpy
-        )
+                along_y = change(work, 2, lane, vr - v, limiter, eps_v, planar)
+                vl, vr = sides(v, vr, keep, along_y)
+            left, right = (rl, ul, vl, wl, pl), (rr, ur, vr, wr, pr)
+        rates = pair_rates(own, left, right, direction, min(lowest_i, lowest_j), gamma)
+        work[SUM * LANES + lane] += rates[0]
+        work[(SUM + 1) * LANES + lane] += rates[1]
+        work[(SUM + 3) * LANES + lane] += rates[3]
+        work[(SUM + 4) * LANES + lane] += rates[4]
         if planar is None:
-            work[(SUM + 2) * LANES + lane] += factor * (
-                left * vl + right * vr - mass * v + push * y
-            )
+            work[(SUM + 2) * LANES + lane] += rates[2]
 
 
 @njit(**FAST_LANEWISE)
@@ -237,12 +223,8 @@ def store(rows, begin, count, frame, work, residual):  # type: ignore[no-untyped
     """Write the sums of a block's nodes, in the laboratory's frame."""
     for lane in range(count):
         i = np.uintp(rows[begin + lane])
-        r0, r1 = work[SUM * LANES + lane], work[(SUM + 1) * LANES + lane]
-        r2, r3 = work[(SUM + 2) * LANES + lane], work[(SUM + 3) * LANES + lane]
-        r4 = work[(SUM + 4) * LANES + lane]
+        rates = five(work, SUM, lane)
         if frame is not None:
-            x, y, z = frame[i, 0], frame[i, 1], frame[i, 2]
-            r4 += x * r1 + y * r2 + z * r3 + 0.5 * (x * x + y * y + z * z) * r0
-            r1, r2, r3 = r1 + x * r0, r2 + y * r0, r3 + z * r0
-        residual[i, 0], residual[i, 1], residual[i, 2] = r0, r1, r2
-        residual[i, 3], residual[i, 4] = r3, r4
+            rates = in_laboratory(rates, frame[i, 0], frame[i, 1], frame[i, 2])
+        residual[i, 0], residual[i, 1], residual[i, 2] = rates[0], rates[1], rates[2]
+        residual[i, 3], residual[i, 4] = rates[3], rates[4]

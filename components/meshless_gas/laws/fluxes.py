@@ -7,7 +7,7 @@ import math
 
 from numba import njit
 
-from quintet.components.meshless_gas.laws.limiters import FAST_LANEWISE
+from quintet.components.meshless_gas.laws.limiters import FAST_LANEWISE, half_step
 
 SENSED, WIDTH = 0.2, 0.3  # pressure ratio below which slopes vanish, and over which they grow
 COLLIDING = 4.0  # ram pressure over pressure above which streams collide
@@ -82,6 +82,135 @@ def ausmpw(  # type: ignore[no-untyped-def]
     carried_l = whole_l if rightward else part_l
     carried_r = part_r if rightward else whole_r
     return carried_l * density_l / per_speed, carried_r * density_r / per_speed, pressure
+
+
+@njit(inline="always")
+def half_steps(limiter, slope_i, slope_j, across, threshold):  # type: ignore[no-untyped-def]
+    """Changes of a variable from both nodes to the middle of their pair, by slopes 2∇q·r."""
+    return (
+        half_step(limiter, slope_i - across, across, threshold),
+        half_step(limiter, slope_j - across, across, threshold),
+    )
+
+
+@njit(inline="always")
+def pair_direction(cx, cy, cz):  # type: ignore[no-untyped-def]
+    """Size |c_ij| [1/m] of a coefficient, and its direction."""
+    size = math.sqrt(cx * cx + cy * cy + cz * cz)
+    per = 1.0 / max(size, 1e-300)
+    return size, cx * per, cy * per, cz * per
+
+
+@njit(inline="always")
+def kept_share(own, other, direction, lowest_i, lowest_j):  # type: ignore[no-untyped-def]
+    """Share of the slopes [1] that a pair keeps, by the pressures around it and how it closes.
+
+    Parameters
+    ----------
+    own, other : (5,) kg/m3, m/s, Pa
+        States of both nodes.
+    direction : (4,) 1/m, 1
+        As `pair_direction` has it.
+    lowest_i, lowest_j : float, Pa
+        Least pressures around both.
+    """
+    r, u, v, w, p = own
+    rr, ur, vr, wr, pr = other
+    _, x, y, z = direction
+    closing = max((u - ur) * x + (v - vr) * y + (w - wr) * z, 0.0)
+    ram = min(r, rr) * closing * closing
+    return smoothness(lowest_i, lowest_j, p, pr, ram)
+
+
+@njit(inline="always")
+def thresholds(own, other, limiter):  # type: ignore[no-untyped-def]
+    """Squares [kg2/m6, Pa2, m2/s2] beside which smaller ones of differences are not limited."""
+    mean_r, mean_p, threshold = own[0] + other[0], own[4] + other[4], limiter.threshold
+    eps_r = threshold * mean_r * mean_r
+    eps_p = threshold * mean_p * mean_p
+    return eps_r, eps_p, threshold * mean_p / mean_r
+
+
+@njit(inline="always")
+def positive_share(keep, own, other, density, pressure):  # type: ignore[no-untyped-def]
+    """Share of the slopes that is kept: 0 where little density or pressure would be left.
+
+    Parameters
+    ----------
+    keep : float, 1
+    own, other : (5,) kg/m3, m/s, Pa
+        States of both nodes.
+    density, pressure : (2,) kg/m3, Pa
+        Their changes from both nodes to the middle of the pair.
+    """
+    r, p, rr, pr = own[0], own[4], other[0], other[4]
+    a, b = density
+    c, d = pressure
+    least_r, least_p = LEAST * min(r, rr), LEAST * min(p, pr)
+    sound = (
+        (r + keep * a > least_r)
+        & (rr - keep * b > least_r)
+        & (p + keep * c > least_p)
+        & (pr - keep * d > least_p)
+    )
+    return keep if sound else 0.0
+
+
+@njit(inline="always")
+def sides(value_i, value_j, keep, changes):  # type: ignore[no-untyped-def]
+    """Values of a variable on both sides of a pair's middle."""
+    return value_i + keep * changes[0], value_j - keep * changes[1]
+
+
+@njit(inline="always")
+def pair_rates(own, left, right, direction, lowest, gamma):  # type: ignore[no-untyped-def]
+    """Rates of density, momentum and energy of a node by the flux between it and a neighbour.
+
+    Parameters
+    ----------
+    own, left, right : (5,) kg/m3, m/s, Pa
+        States of the node and on both sides of the pair's middle, in the node's frame.
+    direction : (4,) 1/m, 1
+        As `pair_direction` has it.
+    lowest : float, Pa
+        Least pressure around both.
+    gamma : float, 1
+
+    Returns
+    -------
+    (5,) kg/(m3 s), N/m3, W/m3
+        -2 |c_ij| (F(q_L, q_R; n_ij) - F(q_i; n_ij)).
+
+    References
+    ----------
+    Katz & Jameson, AIAA J. 48 (2010) 1756, section II.
+    """
+    heat = gamma / (gamma - 1.0)
+    r, u, v, w, p = own
+    rl, ul, vl, wl, pl = left
+    rr, ur, vr, wr, pr = right
+    size, x, y, z = direction
+    normal_l, normal_r = ul * x + vl * y + wl * z, ur * x + vr * y + wr * z
+    carried_l, carried_r, pressure = ausmpw(rl, normal_l, pl, rr, normal_r, pr, lowest, gamma)
+    mass = r * (u * x + v * y + w * z)
+    push, factor = pressure - p, -2.0 * size
+    enthalpy = heat * p / r + 0.5 * (u * u + v * v + w * w)
+    enthalpy_l = heat * pl / rl + 0.5 * (ul * ul + vl * vl + wl * wl)
+    enthalpy_r = heat * pr / rr + 0.5 * (ur * ur + vr * vr + wr * wr)
+    density = factor * (carried_l + carried_r - mass)
+    along_x = factor * (carried_l * ul + carried_r * ur - mass * u + push * x)
+    along_z = factor * (carried_l * wl + carried_r * wr - mass * w + push * z)
+    energy = factor * (carried_l * enthalpy_l + carried_r * enthalpy_r - mass * enthalpy)
+    along_y = factor * (carried_l * vl + carried_r * vr - mass * v + push * y)
+    return density, along_x, along_y, along_z, energy
+
+
+@njit(**FAST_LANEWISE)
+def in_laboratory(rates, x, y, z):  # type: ignore[no-untyped-def]
+    """Rates (5,) of density, momentum and energy as a frame that moves with (x, y, z) has them."""
+    r0, r1, r2, r3, r4 = rates
+    r4 += x * r1 + y * r2 + z * r3 + 0.5 * (x * x + y * y + z * z) * r0
+    return r0, r1 + x * r0, r2 + y * r0, r3 + z * r0, r4
 
 
 @njit(**FAST_LANEWISE)

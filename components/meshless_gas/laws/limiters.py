@@ -8,7 +8,6 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 from numba import njit
-from numba.extending import overload
 
 from quintet.components.shared.numba_options import FAST_LANEWISE
 
@@ -16,36 +15,22 @@ THRESHOLD = 1e-6  # of van Albada's limiter, where the scene says none
 
 
 class Limiter(NamedTuple):
-    """Which limiter a kernel is compiled with: by the class that it is given, none but that one.
+    """Which limiter a kernel is compiled with, none but that one; without a mark van Albada's.
 
     Parameters
     ----------
     threshold : float, 1
         Squares of differences below this share of the square of what they are differences of are
         not limited; of van Albada's.
+    minmod, van_leer, koren, superbee : True or None
+        True of the one that is chosen.
     """
 
     threshold: float = 0.0
-
-
-class VanAlbada(Limiter):
-    """See `van_albada`."""
-
-
-class Minmod(Limiter):
-    """See `minmod`."""
-
-
-class VanLeer(Limiter):
-    """See `van_leer`."""
-
-
-class Koren(Limiter):
-    """See `koren`."""
-
-
-class Superbee(Limiter):
-    """See `superbee`."""
+    minmod: bool | None = None
+    van_leer: bool | None = None
+    koren: bool | None = None
+    superbee: bool | None = None
 
 
 @njit(**FAST_LANEWISE)
@@ -118,37 +103,30 @@ def superbee(upwind, across, threshold):  # type: ignore[no-untyped-def]
     return 0.5 * (max(up, 0.0) + min(down, 0.0))
 
 
-LAWS: dict[type[Limiter], Callable[[float, float, float], float]] = {
-    VanAlbada: van_albada,
-    Minmod: minmod,
-    VanLeer: van_leer,
-    Koren: koren,
-    Superbee: superbee,
-}
-NAMED: dict[str, type[Limiter]] = {
-    "van_albada": VanAlbada,
-    "minmod": Minmod,
-    "van_leer": VanLeer,
-    "koren": Koren,
-    "superbee": Superbee,
+LAWS: dict[str, Callable[[float, float, float], float]] = {
+    "van_albada": van_albada,
+    "minmod": minmod,
+    "van_leer": van_leer,
+    "koren": koren,
+    "superbee": superbee,
 }
 
 
 def limiter_of(name: str, threshold: float | None) -> Limiter:
     """Limiter of a name, of van Albada's with its threshold [1]."""
-    return NAMED[name](THRESHOLD if threshold is None else threshold)
+    marks = {} if name == "van_albada" else {name: True}
+    return Limiter(THRESHOLD if threshold is None else threshold, **marks)
 
 
-def half_step(limiter: Limiter, upwind: float, across: float, threshold: float) -> float:
+@njit(**FAST_LANEWISE)
+def half_step(limiter, upwind, across, threshold):  # type: ignore[no-untyped-def]
     """Change from a node to the middle of a pair by a limiter."""
-    raise NotImplementedError("it is called by compiled functions only")
-
-
-@overload(half_step, jit_options=FAST_LANEWISE)
-def _half_step(limiter, upwind, across, threshold):  # type: ignore[no-untyped-def]
-    law = LAWS[limiter.instance_class]
-
-    def limited(limiter, upwind, across, threshold):  # type: ignore[no-untyped-def]
-        return law(upwind, across, threshold)
-
-    return limited
+    if limiter.minmod is not None:
+        return minmod(upwind, across, threshold)
+    if limiter.van_leer is not None:
+        return van_leer(upwind, across, threshold)
+    if limiter.koren is not None:
+        return koren(upwind, across, threshold)
+    if limiter.superbee is not None:
+        return superbee(upwind, across, threshold)
+    return van_albada(upwind, across, threshold)

@@ -6,7 +6,7 @@ from gases import SOD, gas_in_box, output, run, state, tube
 
 from quintet.components.meshless_gas.kernels.gradients import write_gradients
 from quintet.components.meshless_gas.kernels.residuals import write_residuals
-from quintet.components.meshless_gas.laws.limiters import VanAlbada
+from quintet.components.meshless_gas.laws.limiters import limiter_of
 
 pytestmark = pytest.mark.full  # kernels of their own
 
@@ -49,7 +49,8 @@ def rates(gas, primitive, frame):
     residual = np.zeros((len(primitive), 5))
     write_residuals(
         0, len(domain.inner), domain.inner, cloud.positions, primitive, gradients, lowest,
-        *domain.stencils, frame, None, True, gas.params.gas.gamma, VanAlbada(1e-6), residual,
+        *domain.stencils, frame, None, True, gas.params.gas.gamma, limiter_of("van_albada", 1e-6),
+        residual,
     )  # fmt: skip
     return residual[domain.inner]
 

@@ -7,10 +7,10 @@ import pytest
 from gases import GAMMA, gas_in_box, output, run
 from scipy.spatial import cKDTree
 
-from quintet.components.meshless_gas.kernels.boundaries import GATE
 from quintet.components.meshless_gas.kernels.ghosts import write_ghost_gradients
 from quintet.components.meshless_gas.laws import fluxes as laws
 from quintet.components.meshless_gas.laws import limiters
+from quintet.components.meshless_gas.laws.boundaries import GATE
 from quintet.components.meshless_gas.params import MeshlessGasParams
 from quintet.components.shared.search.nearest import nearest
 from quintet.components.shared.threads import Team

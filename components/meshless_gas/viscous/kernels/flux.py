@@ -10,16 +10,20 @@ import numpy as np
 from numba import njit
 
 from quintet.components.meshless_gas.laws.transport import sutherland
-from quintet.components.shared.numba_options import EXACT, FAST, FAST_INNER
-
-TWO_THIRDS = 2.0 / 3.0
+from quintet.components.meshless_gas.viscous.laws import (
+    diffusion_rate,
+    gas_temperature,
+    own_transfer,
+    pair_transfer,
+)
+from quintet.components.shared.numba_options import EXACT, FAST
 
 
 @njit(**EXACT)
 def write_transport(first, last, primitive, law, transported):  # type: ignore[no-untyped-def]
     """Temperature [K] and viscosity [Pa s] of all nodes, (n, 2)."""
     for i in range(first, last):
-        temperature = primitive[i, 4] / (primitive[i, 0] * law.gas_constant)
+        temperature = gas_temperature(primitive[i, 0], primitive[i, 4], law.gas_constant)
         transported[i, 0] = temperature
         transported[i, 1] = sutherland(temperature, law)
 
@@ -51,35 +55,6 @@ def write_ghost_slopes(begin, end, owner, turn, gradients):  # type: ignore[no-u
             gradients[first + g, a] = along
 
 
-@njit(**FAST_INNER)
-def stress(u, v, w, mu):  # type: ignore[no-untyped-def]
-    """Viscous stress xx yy zz xy xz yz over μ-scaled gradients of three velocities."""
-    third = TWO_THIRDS * (u[0] + v[1] + w[2])
-    return (
-        mu * (2.0 * u[0] - third),
-        mu * (2.0 * v[1] - third),
-        mu * (2.0 * w[2] - third),
-        mu * (u[1] + v[0]),
-        mu * (u[2] + w[0]),
-        mu * (v[2] + w[1]),
-    )
-
-
-@njit(**FAST_INNER)
-def corrected(a, b, rise, r, inverse):  # type: ignore[no-untyped-def]
-    """Gradient between two nodes whose component along r is their difference."""
-    x, y, z = 0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1]), 0.5 * (a[2] + b[2])
-    excess = (x * r[0] + y * r[1] + z * r[2] - rise) * inverse
-    return x - excess * r[0], y - excess * r[1], z - excess * r[2]
-
-
-@njit(**FAST_INNER)
-def along(tensor, x, y, z):  # type: ignore[no-untyped-def]
-    """A symmetric tensor xx yy zz xy xz yz times a vector."""
-    xx, yy, zz, xy, xz, yz = tensor
-    return xx * x + xy * y + xz * z, xy * x + yy * y + yz * z, xz * x + yz * y + zz * z
-
-
 @njit(**FAST)
 def add_viscous(  # type: ignore[no-untyped-def]
     first, last, rows, positions, primitive, transported, neighbours, coefficients, gradients,
@@ -109,27 +84,20 @@ def add_viscous(  # type: ignore[no-untyped-def]
             cx, cy, cz = coefficients[i, k, 0], coefficients[i, k, 1], coefficients[i, k, 2]
             r = (positions[j, 0] - x, positions[j, 1] - y, positions[j, 2] - z)
             inverse = 1.0 / (r[0] * r[0] + r[1] * r[1] + r[2] * r[2])
-            a, b, c = primitive[j, 1], primitive[j, 2], primitive[j, 3]
+            other = (primitive[j, 1], primitive[j, 2], primitive[j, 3])
             h, s = gradients[j], temperature_gradients[j]
             mu = 0.5 * (mu_i + transported[j, 1])
-            tensor = stress(
-                corrected(g[1], h[1], a - u, r, inverse),
-                corrected(g[2], h[2], b - v, r, inverse),
-                corrected(g[3], h[3], c - w, r, inverse),
-                mu,
+            rise = transported[j, 0] - temperature
+            px, py, pz, pe = pair_transfer(
+                (u, v, w), other, g, h, t, s, rise, r, inverse, (cx, cy, cz), mu, law
             )
-            q = corrected(t, s, transported[j, 0] - temperature, r, inverse)
-            px, py, pz = along(tensor, cx, cy, cz)
-            fx, fy, fz = fx + px, fy + py, fz + pz
-            work = px * (u + a) + py * (v + b) + pz * (w + c)
-            fe += 0.5 * work + law.conduction * mu * (q[0] * cx + q[1] * cy + q[2] * cz)
+            fx, fy, fz, fe = fx + px, fy + py, fz + pz, fe + pe
             sx, sy, sz = sx + cx, sy + cy, sz + cz
-        px, py, pz = along(stress(g[1], g[2], g[3], mu_i), sx, sy, sz)
-        heat = law.conduction * mu_i * (t[0] * sx + t[1] * sy + t[2] * sz)
+        px, py, pz, pe = own_transfer((u, v, w), g, t, (sx, sy, sz), mu_i, law)
         residual[i, 1] += 2.0 * (fx - px)
         residual[i, 2] += 2.0 * (fy - py)
         residual[i, 3] += 2.0 * (fz - pz)
-        residual[i, 4] += 2.0 * (fe - (px * u + py * v + pz * w + heat))
+        residual[i, 4] += 2.0 * (fe - pe)
 
 
 @njit(**FAST)
@@ -141,8 +109,7 @@ def shorten_bounds(  # type: ignore[no-untyped-def]
 
     1/Δt_i is raised by Σ_j 2 |c_ij|/|r_ij| · γ μ/(Pr ρ).
     """
-    least, heat = np.inf, gamma / (gamma - 1.0) * law.gas_constant
-    factor = 2.0 * gamma * law.conduction / heat
+    least = np.inf
     for row in range(first, last):
         i = np.uintp(rows[row])
         total = 0.0
@@ -154,7 +121,7 @@ def shorten_bounds(  # type: ignore[no-untyped-def]
                 r += (positions[j, axis] - positions[i, axis]) ** 2
             if r > 0.0:
                 total += np.sqrt(c / r)
-        rate = total * factor * transported[i, 1] / primitive[i, 0]
+        rate = diffusion_rate(total, primitive[i, 0], transported[i, 1], gamma, law)
         bounds[i] = 1.0 / (1.0 / bounds[i] + rate)
         least = min(least, bounds[i])
     return least

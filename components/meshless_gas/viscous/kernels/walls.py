@@ -4,10 +4,7 @@ import math
 
 from numba import njit
 
-from quintet.components.meshless_gas.kernels.boundaries import GATE
-from quintet.components.meshless_gas.laws.fluxes import wall_pressure
-from quintet.components.meshless_gas.laws.transport import sutherland
-from quintet.components.meshless_gas.viscous.laws import wall_slope
+from quintet.components.meshless_gas.viscous.laws import gas_temperature, wall_state, wall_traction
 from quintet.components.shared.numba_options import EXACT
 
 
@@ -38,17 +35,13 @@ def write_no_slip_walls(  # type: ignore[no-untyped-def]
             if share == 0.0:
                 continue
             pressure += share * primitive[j, 4]
-            warmth += share * primitive[j, 4] / (primitive[j, 0] * law.gas_constant)
+            warmth += share * gas_temperature(primitive[j, 0], primitive[j, 4], law.gas_constant)
             for axis in range(3):
                 into -= share * (primitive[j, 1 + axis] - velocity[n, axis]) * normals[i, axis]
-        mach = into / math.sqrt(gamma * law.gas_constant * warmth)
-        if mach > GATE:
-            pressure = wall_pressure(pressure, mach, gamma)
-        if temperature[n] > 0.0:
-            warmth = temperature[n]
-        primitive[i, 0] = pressure / (law.gas_constant * warmth)
-        primitive[i, 1], primitive[i, 2], primitive[i, 3] = velocity[n]
-        primitive[i, 4] = pressure
+        of_wall = (velocity[n, 0], velocity[n, 1], velocity[n, 2])
+        state = wall_state(pressure, warmth, into, of_wall, temperature[n], gamma, law)
+        for q in range(5):
+            primitive[i, q] = state[q]
 
 
 @njit(**EXACT)
@@ -62,23 +55,14 @@ def write_tractions(  # type: ignore[no-untyped-def]
     """
     for n in range(rows.shape[0]):
         i, j, k = rows[n], above[n, 0], above[n, 1]
-        near, far, along = 0.0, 0.0, 0.0
+        near, far = 0.0, 0.0
         for axis in range(3):
             near += (positions[j, axis] - positions[i, axis]) * normals[i, axis]
             far += (positions[k, axis] - positions[i, axis]) * normals[i, axis]
-        wall = primitive[i, 4] / (primitive[i, 0] * law.gas_constant)
-        mu = sutherland(wall, law)
-        near_temperature = primitive[j, 4] / (primitive[j, 0] * law.gas_constant)
-        two = primitive[k, 4] / (primitive[k, 0] * law.gas_constant)
-        heat[n] = law.conduction * mu * wall_slope(wall, near_temperature, two, near, far)
-        for axis in range(3):
-            slope = wall_slope(
-                velocity[n, axis], primitive[j, 1 + axis], primitive[k, 1 + axis], near, far
-            )
-            friction[n, axis] = mu * slope
-            along += friction[n, axis] * normals[i, axis]
-        for axis in range(3):
-            friction[n, axis] -= along * normals[i, axis]
+        x, y, z, flux = wall_traction(
+            primitive[i], primitive[j], primitive[k], near, far, velocity[n], normals[i], law
+        )
+        friction[n, 0], friction[n, 1], friction[n, 2], heat[n] = x, y, z, flux
 
 
 @njit(**EXACT)

@@ -4,7 +4,6 @@ Waves that reach the boundary leave through it; what comes in is that of the gas
 """
 
 import math
-from typing import Any
 
 from numba import njit
 
@@ -25,17 +24,26 @@ def velocity_change(p: float, density: float, pressure: float, gamma: float) -> 
 
 
 @njit(**INNER)
-def between(
+def bracket(
     density_l: float, u_l: float, p_l: float, density_r: float, u_r: float, p_r: float, gamma: float
 ) -> tuple[float, float]:
-    """Pressure [Pa] and velocity [m/s] between the waves; of gas torn apart the pressure is 0."""
+    """Pressures [Pa] below and above that between the waves."""
     low, high = 0.0, max(p_l, p_r)
     for _ in range(HALVINGS):
         gap = velocity_change(high, density_l, p_l, gamma)
         gap += velocity_change(high, density_r, p_r, gamma) + u_r - u_l
         if gap >= 0.0:
-            break
+            return low, high
         low, high = high, 4.0 * high
+    return low, high
+
+
+@njit(**INNER)
+def between(
+    density_l: float, u_l: float, p_l: float, density_r: float, u_r: float, p_r: float, gamma: float
+) -> tuple[float, float]:
+    """Pressure [Pa] and velocity [m/s] between the waves; of gas torn apart the pressure is 0."""
+    low, high = bracket(density_l, u_l, p_l, density_r, u_r, p_r, gamma)
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)
         gap = velocity_change(middle, density_l, p_l, gamma)
@@ -75,33 +83,40 @@ def at_rest(
 
 
 @njit(**INNER)
-def meet(near: Any, outer: Any, normal: Any, gamma: float) -> None:
-    """Write the state at a boundary into that of the gas within.
+def meet(near, outer, normal, gamma):  # type: ignore[no-untyped-def]
+    """State at a boundary.
 
     Parameters
     ----------
-    near : (5,) kg/m3, m/s, Pa
-        Of the gas within; written.
-    outer : (5 or more,) kg/m3, m/s, Pa
-        Of the gas beyond.
+    near, outer : (5,) kg/m3, m/s, Pa
+        Of the gas within and of that beyond.
     normal : (3,) 1
         Into the gas.
+
+    Returns
+    -------
+    (5,) kg/m3, m/s, Pa
     """
-    into = inside = 0.0
-    for d in range(3):
-        into += outer[1 + d] * normal[d]
-        inside += near[1 + d] * normal[d]
+    into = outer[1] * normal[0] + outer[2] * normal[1] + outer[3] * normal[2]
+    inside = near[1] * normal[0] + near[2] * normal[1] + near[3] * normal[2]
     star, velocity = between(outer[0], into, outer[4], near[0], inside, near[4], gamma)
     if not star > 0.0:  # torn apart: the boundary has the gas within
-        return
-    comes_in = velocity >= 0.0
-    if comes_in:
+        return near
+    if velocity >= 0.0:  # it comes in
         density, u, p = at_rest(outer[0], into, outer[4], star, velocity, gamma)
-    else:  # seen from within, against the normal
-        density, u, p = at_rest(near[0], -inside, near[4], star, -velocity, gamma)
-        u = -u
-    across = into if comes_in else inside
-    for d in range(3):
-        along = (outer[1 + d] if comes_in else near[1 + d]) - across * normal[d]
-        near[1 + d] = along + u * normal[d]
-    near[0], near[4] = density, p
+        return with_normal_speed(outer, normal, into, density, u, p)
+    # Seen from within, against the normal.
+    density, u, p = at_rest(near[0], -inside, near[4], star, -velocity, gamma)
+    return with_normal_speed(near, normal, inside, density, -u, p)
+
+
+@njit(**INNER)
+def with_normal_speed(state, normal, across, density, u, p):  # type: ignore[no-untyped-def]
+    """State (5,) of another density and pressure, and of the speed u in place of `across`."""
+    return (
+        density,
+        state[1] - across * normal[0] + u * normal[0],
+        state[2] - across * normal[1] + u * normal[1],
+        state[3] - across * normal[2] + u * normal[2],
+        p,
+    )
