@@ -29,6 +29,19 @@ def vortex(nodes: int, **keys: Any) -> dict[str, Any]:
 def cases() -> tuple[BenchCase, ...]:
     """Clouds that fit into a processor's cache, and that do not; first order; boxes in space."""
     space, plane = {"dimensions": 3, "neighbours": 14}, "vortex, 9 neighbours"
+    # Loads pyopencl where it is installed; benchmarks alone ask for it.
+    from quintet.components.shared.opencl.devices import is_any_there
+
+    on_devices = (
+        BenchCase(f"{name}, OpenCL", params, *steps, UNIT, device="opencl")
+        for name, params, steps in (
+            ("vortex, 10k nodes, 9 neighbours", vortex(100), (20, 60)),
+            ("vortex, 64k nodes, 9 neighbours", vortex(253), (10, 30)),
+            ("box, 64k nodes, 14 neighbours", vortex(40, **space), (5, 15)),
+            ("box, 300k nodes, 14 neighbours", vortex(67, **space), (2, 6)),
+        )
+        if is_any_there()
+    )
     return (
         BenchCase("vortex, 10k nodes, 9 neighbours", vortex(100), 20, 60, UNIT, series=plane),
         BenchCase("vortex, 64k nodes, 9 neighbours", vortex(253), 10, 30, UNIT, series=plane),
@@ -38,4 +51,5 @@ def cases() -> tuple[BenchCase, ...]:
         BenchCase(
             "box, 64k nodes, 14 neighbours, viscous", vortex(40, **space, viscous=True), 5, 15, UNIT
         ),
+        *on_devices,
     )

@@ -141,17 +141,23 @@ class MeshlessGas(Component):
         failed = ranks.greatest(first + wrong if wrong >= 0 else -1)  # among all
         if failed >= 0:
             mine: list[int] = [wrong] if wrong >= 0 and first + wrong == failed else []
-            rows = nodes[mine].astype(np.int64)
-            sided = sidedness(domain.cloud, domain.stencils, rows, self.params.planar, self.team)
-            numbers = (domain.cloud.positions[rows], work.primitive[rows], sided[:, None])
-            where = ranks.from_owner(np.hstack(numbers).ravel())
-            share = dt / self.scheme.shortest_step
-            raise StepError(
-                diagnostics.failure(where[:3], where[3:8], state.time, share, float(where[8])),
-                where[:3],
-            )
+            raise self.failure(mine, dt)
         if len(domain.mirrored):
             hold_along(domain.mirrored, domain.cloud.normals, state.conservative, work.primitive)
+
+    def failure(self, wrong: list[int], dt: float) -> StepError:
+        """Error of a state that is none in a step of dt [s].
+
+        `wrong` has the row among nodes that are advanced, on the rank that has it.
+        """
+        domain, state, primitive = self.motion.domain, self.state, self.fluxes.primitive
+        rows = self.all_ranks.share(domain).inner[wrong].astype(np.int64)
+        sided = sidedness(domain.cloud, domain.stencils, rows, self.params.planar, self.team)
+        numbers = (domain.cloud.positions[rows], primitive[rows], sided[:, None])
+        where = self.all_ranks.from_owner(np.hstack(numbers).ravel())
+        share = dt / self.scheme.shortest_step
+        sentence = diagnostics.failure(where[:3], where[3:8], state.time, share, float(where[8]))
+        return StepError(sentence, where[:3])
 
     def _continue_from_state(self) -> None:
         """Compute all that follows from the state, as it is at the start or was loaded."""

@@ -52,7 +52,20 @@ def cases() -> tuple[ConformCase, ...]:
             smooth=False,  # it is limited, and the wall stops what strikes it
         ),
         ConformCase("shock tube", tube, dt=STEP, still=False, smooth=False),
+        *_on_devices(stream),
     )
+
+
+def _on_devices(stream: dict[str, Any]) -> tuple[ConformCase, ...]:
+    """A stream on a device, where there is one."""
+    # Loads pyopencl where it is installed; this case alone asks for it.
+    from quintet.components.shared.opencl.devices import is_any_there
+
+    if not is_any_there():
+        return ()
+    name = "stream over a wall, OpenCL"
+    step = 0.2 * STEP
+    return (ConformCase(name, stream, dt=step, still=False, smooth=False, device="opencl"),)
 
 
 def _dusty() -> ConformCase:

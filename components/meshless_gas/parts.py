@@ -162,6 +162,7 @@ class Monitor(Part):
     """Judges whether the flow has settled."""
 
     is_settled = False
+    looks_next = False  # whether the next update looks at the states
 
     def update(self, primitive: Array, change: float, time: float) -> None:
         """Count a step of this relative change of densities [1], up to a time [s]."""

@@ -110,11 +110,15 @@ class SpatialScheme:
         self.shortest_step = min(shortest)
         for part in self.parts:
             self.shortest_step = part.shorten(domain, work, self.shortest_step)
-        self.shortest_step = self.ranks.least(self.shortest_step)
-        if not (0.0 < self.shortest_step < math.inf):
-            raise StepError(
-                f"the gas must have a stable step at t = {time:.6g} s; found "
-                f"{self.shortest_step:g} s. Lower courant."
-            )
+        self.accept(self.ranks.least(self.shortest_step), time)
         if self.steps is not None:
             np.divide(work.bounds, self.shortest_step, out=work.steps)
+
+    def accept(self, shortest: float, time: float) -> None:
+        """Note the shortest stable step [s] of all nodes at a time [s]; refuse none."""
+        self.shortest_step = shortest
+        if not (0.0 < shortest < math.inf):
+            raise StepError(
+                f"the gas must have a stable step at t = {time:.6g} s; found {shortest:g} s. "
+                "Lower courant."
+            )

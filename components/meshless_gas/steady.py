@@ -36,13 +36,27 @@ class SteadyMonitor(Monitor):
         """Whether the flow has settled."""
         return bool(self.memory[SETTLED])
 
+    @property
+    def looks_next(self) -> bool:  # type: ignore[override]
+        """Whether the next update looks at the states."""
+        steps = self.memory[STEPS] + 1.0
+        return bool(self._is_marked(steps) or self._is_checked(steps))
+
+    def _is_marked(self, steps: float) -> bool:
+        """Whether densities and forces are noted after so many steps."""
+        return bool(steps > APART * self.marks[1, 0])
+
+    def _is_checked(self, steps: float) -> bool:
+        """Whether the force is compared with that at the last check."""
+        return steps % self.criteria.steps == 0.0
+
     def update(self, primitive: Array, change: float, time: float) -> None:
         """Count a step; every so many, compare the force on walls with that at the last check."""
         self.memory[STEPS] += 1.0
-        if self.memory[STEPS] > APART * self.marks[1, 0]:
+        if self._is_marked(self.memory[STEPS]):
             self.marks[0] = self.marks[1]
             self.marks[1] = self._mark(primitive)
-        if self.memory[STEPS] % self.criteria.steps != 0.0:
+        if not self._is_checked(self.memory[STEPS]):
             return
         force = self.walls.force(primitive)
         moved = np.sqrt(((force - self.memory[FORCE:]) ** 2).sum())

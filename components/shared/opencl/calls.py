@@ -9,7 +9,7 @@ from quintet.components.shared.opencl.refusal import Place
 from quintet.components.shared.opencl.types import INT, LANES, NUMBERS, REAL, Type
 from quintet.components.shared.opencl.values import Value, converted
 
-ONE_LANE = "Print it for one lane, or use min and max in place of branches."
+ONE_LANE = "Print it for one lane, or use min, max and conditional expressions of numbers, and &."
 PASS_NUMBERS = "Pass what it needs as arguments, or write it out."
 
 

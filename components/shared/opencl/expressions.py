@@ -6,14 +6,16 @@ import types as python_types
 from typing import Any, Protocol
 
 from quintet.components.shared.opencl.calls import ONE_LANE, PASS_NUMBERS, c_name, intrinsic
-from quintet.components.shared.opencl.functions import ARITHMETIC, BITWISE, COMPARED, ROUNDED_DOWN
+from quintet.components.shared.opencl.functions import ARITHMETIC, BITWISE, ROUNDED_DOWN
 from quintet.components.shared.opencl.names import identifier
 from quintet.components.shared.opencl.prelude import Precision, power_name
 from quintet.components.shared.opencl.refusal import Place, PrintError
+from quintet.components.shared.opencl.truths import both, compared
 from quintet.components.shared.opencl.types import (
     FLAG,
     INT,
     LANES,
+    MASK,
     NONE,
     NUMBERS,
     REAL,
@@ -82,6 +84,8 @@ class Expressions:
     def condition(self, node: ast.expr) -> Value:
         """Print an expression that must be true or false."""
         value = self.print(node)
+        if value.kind == MASK:
+            raise self.refuse(node, f"`{ast.unparse(node)}` of several lanes", ONE_LANE)
         if value.kind != FLAG:
             raise self.refuse(
                 node, f"`{ast.unparse(node)}` as a condition", "Write the comparison out, as x > 0."
@@ -171,6 +175,9 @@ class Expressions:
         return Value(f"(-{value.code})", value.kind, number)
 
     def _binop(self, node: ast.BinOp) -> Value:
+        truth = both(node.op, self.print(node.left), self.print(node.right))
+        if truth is not None:
+            return truth
         return self.binary(node.op, self.number(node.left), self.number(node.right), node)
 
     def binary(self, op: ast.operator, left: Value, right: Value, node: ast.AST) -> Value:
@@ -212,18 +219,13 @@ class Expressions:
     def _compare(self, node: ast.Compare) -> Value:
         if len(node.ops) == 1 and isinstance(node.ops[0], ast.Is | ast.IsNot):
             return self._is_none(node)
-        operands, parts = [self.print(node.left)], []
-        for op, right in zip(node.ops, node.comparators, strict=True):
-            operands.append(self.print(right))
-            pair = operands[-2:]
-            if type(op) not in COMPARED or any(operand.kind not in NUMBERS for operand in pair):
-                raise self.refuse(node, f"`{ast.unparse(node)}`", "Compare numbers.")
-            kind = max(pair[0].kind, pair[1].kind, key=NUMBERS.index)
-            if kind == LANES:
-                raise self.refuse(node, f"`{ast.unparse(node)}` of several lanes", ONE_LANE)
-            a, b = (converted(operand, kind, self.program.precision).code for operand in pair)
-            parts.append(f"({a} {COMPARED[type(op)]} {b})")
-        return Value(parts[0] if len(parts) == 1 else f"({' && '.join(parts)})", FLAG)
+        operands = [self.print(operand) for operand in (node.left, *node.comparators)]
+        truth = compared(node.ops, operands, self.program.precision)
+        if truth is None:
+            raise self.refuse(
+                node, f"`{ast.unparse(node)}`", "Compare numbers, all in lanes or none."
+            )
+        return truth
 
     def _is_none(self, node: ast.Compare) -> Value:
         right = node.comparators[0]
@@ -247,13 +249,18 @@ class Expressions:
         return Value(f"({(' && ' if is_and else ' || ').join(parts)})", FLAG, number)
 
     def _ifexp(self, node: ast.IfExp) -> Value:
-        test = self.condition(node.test)
+        test = self.print(node.test)
+        if test.kind != MASK:
+            test = self.condition(node.test)
         if test.number is not None:
             return self.print(node.body if test.number else node.orelse)
         first, second = self.print(node.body), self.print(node.orelse)
         kind = unified(first.kind, second.kind)
         if kind is None or kind == NONE:
             raise self.refuse(node, f"`{ast.unparse(node)}` of two types", "Make them the same.")
+        if test.kind == MASK and kind not in NUMBERS:
+            raise self.refuse(node, f"`{ast.unparse(node)}` of several lanes", ONE_LANE)
+        kind = LANES if test.kind == MASK else kind
         a, b = self.convert(first, kind, node).code, self.convert(second, kind, node).code
         return Value(f"({test.code} ? {a} : {b})", kind)
 

@@ -60,6 +60,8 @@ static reals min_reals(reals a, reals b) { return b < a ? b : a; }
 def prelude(precision: Precision, lanes: int) -> str:
     """First lines of a program; products are never contracted with sums."""
     of_lanes = f"typedef {precision_name(precision)}{lanes if lanes > 1 else ''} reals;\n"
+    whole = {"double": "long", "single": "int"}[precision]
+    of_lanes += f"typedef {f'{whole}{lanes}' if lanes > 1 else 'int'} mask;\n"
     exact = "#pragma OPENCL FP_CONTRACT OFF\n"
     return f"{REALS[precision]}{of_lanes}{exact}{OPERATIONS}{IN_LANES}"
 

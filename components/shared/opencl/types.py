@@ -18,6 +18,7 @@ REAL = Scalar("real", "r")  # double or float, as the program says
 LANES = Scalar("reals", "v")  # as many of these as a program computes at once
 INT = Scalar("long", "i")
 FLAG = Scalar("int", "b")  # True or False: `bool` has no fixed size
+MASK = Scalar("mask", "m")  # a truth of each of LANES
 NONE = Scalar("none", "n")  # known when a law is printed; of it nothing is printed
 NUMBERS = (FLAG, INT, REAL, LANES)  # each can become the next one
 

@@ -255,7 +255,9 @@ def test_single_precision_refuses_constants_that_it_cannot_hold():
 
 
 def shortens(x):
-    return 1.0 if x > 0.0 else 0.0
+    if x > 0.0:
+        return 1.0
+    return 0.0
 
 
 def rounds_down(x):

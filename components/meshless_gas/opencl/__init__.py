@@ -1,0 +1,1 @@
+"""The gas on an OpenCL device; imported only by a scene that asks for one."""

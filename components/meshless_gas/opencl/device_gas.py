@@ -1,0 +1,169 @@
+"""The gas as a component whose steps run on an OpenCL device.
+
+A `MeshlessGas` on the host makes the nodes, and reads gauges, totals, views, checks and snapshots:
+states are copied into its arrays before. Between these a step brings back the flows through the
+boundary, the shortest stable step, and the change of the densities.
+"""
+
+from dataclasses import replace
+
+from quintet.components.meshless_gas import MANIFEST
+from quintet.components.meshless_gas.component import MeshlessGas
+from quintet.components.meshless_gas.kernels.motion import STAGES
+from quintet.components.meshless_gas.opencl.refusal import refuse_what_needs_the_processor
+from quintet.components.meshless_gas.opencl.stepping import Outcome, Stepping
+from quintet.components.meshless_gas.params import MeshlessGasParams
+from quintet.components.meshless_gas.parts import FixedNodes
+from quintet.components.meshless_gas.ports import SHOWS
+from quintet.components.meshless_gas.ranks.one import OneRank
+from quintet.components.shared.opencl.devices import device_of
+from quintet.interfaces.component import Component, Fields, Keys, Resources, Totals
+from quintet.interfaces.errors import SceneError
+
+FIRST_DEVICE = Resources(device="opencl")
+
+
+class DeviceGas(Component):
+    """Moves a gas through the nodes of a fixed cloud, on a device."""
+
+    Params: type[MeshlessGasParams] = MeshlessGasParams
+    manifest = MANIFEST
+    shows = SHOWS
+    compiles = True
+
+    def __init__(self, params: MeshlessGasParams, resources: Resources = FIRST_DEVICE) -> None:
+        refuse_what_needs_the_processor(params, resources.device)
+        device = device_of(resources.device)
+        if not device.has_doubles:
+            raise SceneError(
+                f"device {resources.device}: it must compute in double precision, in which the "
+                f"state of a gas is kept; {device.name} does not. Choose another of those that "
+                "`quintet devices` lists."
+            )
+        self.params, (self.takes, self.gives) = params, self.ports_of(params)
+        self.host = MeshlessGas(params, replace(resources, device="cpu"))
+        self._refuse_other_parts(resources.device)
+        self.stepping = Stepping(
+            params, device, resources.threads, self.host.motion.domain, self.host.friction
+        )
+        self._put()
+
+    def _refuse_other_parts(self, device: str) -> None:
+        """Refuse parts that a step on the processor calls, and one on a device does not."""
+        host = self.host
+        names = [
+            type(part).__name__
+            for part in (host.motion, host.all_ranks, *host.parts)
+            if not isinstance(part, FixedNodes | OneRank) and part is not host.friction
+        ]
+        if names:
+            raise SceneError(
+                f"on device {device}, a gas must have no parts that the processor alone "
+                f'computes; found {", ".join(names)}. Set device = "cpu".'
+            )
+
+    def describe(self) -> Fields:
+        """State static fields."""
+        return self.host.describe()
+
+    def bind(self, static: Fields, joined: Keys) -> None:
+        """Take the static fields of partners."""
+        self.host.bind(static, joined)
+
+    def stable_dt(self) -> float:
+        """Return the share `courant` of the shortest stable step."""
+        return self.host.stable_dt()
+
+    def take(self, fields: Fields) -> None:
+        """Take nothing: neither bodies nor particles have partners."""
+
+    def step(self, dt: float) -> None:
+        """Advance by dt [s]; with local time steps, dt is the smallest."""
+        host, state = self.host, self.host.state
+        if host.monitor.is_settled:
+            state.time += dt
+            return
+        outcome = self.stepping.step(dt, host.scheme.shortest_step)
+        self._is_read = False
+        if outcome.wrong >= 0:
+            self._get()
+            raise host.failure([outcome.wrong], dt)
+        flows = [host.fluxes.flows.copy(), *outcome.flows[:-1]]  # at the begin of each stage
+        for (_, _, share), entering in zip(STAGES, flows, strict=True):
+            state.entered += share * dt * entering
+            state.work += share * dt * float(entering[4])
+        state.time += dt
+        self._follow(outcome)
+        state.change = outcome.change
+        if host.monitor.looks_next:
+            self._get()
+        host.monitor.update(host.fluxes.primitive, state.change, state.time)
+
+    def _follow(self, outcome: Outcome) -> None:
+        """Let the host have the flows and the stable step of the states as they are."""
+        self.host.fluxes.flows[:] = outcome.flows[-1]
+        self.host.scheme.accept(outcome.shortest, self.host.state.time)
+
+    def _put(self) -> None:
+        """Copy the host's state to the device."""
+        host = self.host
+        outcome = self.stepping.put(host.fluxes.primitive, host.state.conservative)
+        self._is_read = False  # boundaries have the bits of the device
+        self._follow(outcome)
+
+    def _get(self) -> None:
+        """Copy the states into the host's arrays, unless they are there; find loads on walls."""
+        if self._is_read:
+            return
+        host = self.host
+        self.stepping.get(host.fluxes.primitive, host.state.conservative)
+        host.friction.add_flows(host.motion.domain, host.fluxes.primitive, host.fluxes.flows.copy())
+        self._is_read = True
+
+    def give(self, wanted: Keys) -> Fields:
+        """Copy out the fields of the ports that are wanted."""
+        if wanted:
+            self._get()
+        return self.host.give(wanted)
+
+    def save(self) -> Fields:
+        """Copy out all state, as a gas on the processor has it."""
+        self._get()
+        return self.host.save()
+
+    def load(self, state: Fields) -> None:
+        """Come back to a saved state, of a gas on the processor or on a device."""
+        self.host.load(state)
+        self._put()
+
+    def notes(self) -> tuple[str, ...]:
+        """Changes of neighbours, and the accuracy of clouds of bodies."""
+        return self.host.notes()
+
+    def warnings(self) -> dict[str, str]:
+        """Doubts about the cloud and the order, and about inflows at which waves have arrived."""
+        self._get()
+        return self.host.warnings()
+
+    def final_warnings(self) -> dict[str, str]:
+        """Doubts about a flow that was to settle and has not."""
+        self._get()
+        return self.host.final_warnings()
+
+    def totals(self) -> Totals:
+        """Mass, momentum and energies of all nodes."""
+        self._get()
+        return self.host.totals()
+
+    def view(self) -> Fields:
+        """Nodes, and the state at each."""
+        self._get()
+        return self.host.view()
+
+    def walls(self) -> Fields:
+        """Walls of a box, or the wall of a body."""
+        return self.host.walls()
+
+    def items(self) -> int:
+        """Count the nodes."""
+        return self.host.items()

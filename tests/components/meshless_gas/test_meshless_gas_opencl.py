@@ -1,0 +1,181 @@
+"""A gas on an OpenCL device is the gas of the processor, to rounding."""
+
+import subprocess
+import sys
+from dataclasses import fields
+
+import numpy as np
+import pytest
+from device_gases import (
+    DEVICE,
+    FROM_REST,
+    IN_SPACE,
+    SPHERE,
+    STREAM,
+    SUPERSONIC,
+    advanced,
+    apart,
+    both,
+    params_of,
+    same_bits,
+)
+
+from quintet.components.meshless_gas.boundaries import Boundary
+from quintet.components.meshless_gas.component import MeshlessGas
+from quintet.components.meshless_gas.laws.limiters import LAWS
+from quintet.components.meshless_gas.params import MeshlessGasParams
+from quintet.interfaces.component import Resources
+from quintet.interfaces.errors import SceneError, StepError
+
+pytest.importorskip("pyopencl")
+from quintet.components.meshless_gas.opencl import device_gas
+from quintet.components.meshless_gas.opencl.device_gas import DeviceGas
+from quintet.components.meshless_gas.opencl.refusal import (
+    SUPPORTED,
+    limits,
+    refuse_what_needs_the_processor,
+)
+from quintet.components.shared.opencl.devices import Device
+
+NIGHTLY = pytest.mark.full  # programs of their own
+
+
+@pytest.mark.parametrize(
+    ("table", "steps"),
+    [
+        (STREAM, 1000),
+        (FROM_REST, 60),
+        (SUPERSONIC, 60),
+        pytest.param(STREAM | {"order": 1}, 60, marks=NIGHTLY),
+        pytest.param(IN_SPACE, 60, marks=NIGHTLY),
+        pytest.param(SPHERE, 60, marks=NIGHTLY),
+        *(pytest.param(STREAM | {"limiter": name}, 60, marks=NIGHTLY) for name in LAWS),
+    ],
+)
+def test_a_device_computes_as_the_processor_does(table, steps):
+    processor, device = both(DeviceGas, table, steps)
+    first, second = processor.save(), device.save()
+    assert first.keys() == second.keys()
+    assert first["time"] > 0.0 and np.any(first["entered"])
+    for key in ("conservative", "primitive", "entered", "time", "work", "begun"):
+        assert apart(first[key], second[key]) < 1e-12, key
+    assert device.stable_dt() == pytest.approx(processor.stable_dt(), rel=1e-12)
+
+
+def test_a_device_that_is_no_processor_gets_tables_by_columns_and_single_lanes(monkeypatch):
+    monkeypatch.setattr(Device, "is_processor", property(lambda self: False))
+    processor, device = both(DeviceGas, SUPERSONIC, 30)
+    assert not device.stepping.tables.by_rows and device.stepping.lanes == 1
+    assert apart(processor.save()["conservative"], device.save()["conservative"]) < 1e-13
+
+
+def test_gauges_totals_and_views_are_those_of_the_processor():
+    processor, device = both(DeviceGas, STREAM, 40)
+    names = frozenset(f"{p.name}.{f.name}" for p in device.gives for f in p.fields)
+    expected, computed = processor.give(names), device.give(names)
+    assert computed.keys() == expected.keys() == names and "probes.pressure" in names
+    for name in names - {"balance.mass_drift", "balance.energy_drift", "balance.momentum_drift"}:
+        assert computed[name] == pytest.approx(expected[name], rel=1e-9, abs=1e-12), name
+    assert device.totals().kinetic == pytest.approx(processor.totals().kinetic, rel=1e-12)
+    assert apart(processor.view()["schlieren"], device.view()["schlieren"]) < 1e-9
+    assert device.items() == processor.items()
+
+
+def test_the_same_device_gives_the_same_bits_on_any_number_of_threads():
+    params = params_of(STREAM)
+    first, second = (
+        advanced(DeviceGas(params, Resources(threads, device="opencl:0")), 30).save()
+        for threads in (1, 2)
+    )
+    same_bits(first, second)
+
+
+SETTLING = {"steady": {"steps": 10, "change": 1e-9}, "local_steps": True}
+
+
+def test_nodes_take_steps_of_their_own_and_settle_as_on_the_processor():
+    table = STREAM | SETTLING | {"steady": {"steps": 10, "change": 2e-3, "force": 1.0}}
+    processor, device = both(DeviceGas, table, 400)
+    assert processor.monitor.is_settled and device.host.monitor.is_settled
+    first, second = processor.save(), device.save()
+    for key in ("conservative", "settling", "settling_marks", "change"):
+        assert apart(first[key], second[key]) < 1e-10, key
+
+
+def test_a_snapshot_of_a_device_goes_on_there_with_the_same_bits():
+    params = params_of(STREAM | SETTLING)
+    device, loaded = advanced(DeviceGas(params, DEVICE), 25), DeviceGas(params, DEVICE)
+    loaded.load(device.save())
+    same_bits(advanced(device, 25).save(), advanced(loaded, 25).save())
+
+
+def test_snapshots_go_on_elsewhere():
+    params = params_of(STREAM)
+    processor, device = both(DeviceGas, STREAM, 25)
+    moved_out, moved_in = MeshlessGas(params), DeviceGas(params, DEVICE)
+    moved_out.load(device.save())
+    moved_in.load(processor.save())
+    uninterrupted = advanced(processor, 25).save()["conservative"]
+    for gas in (moved_out, moved_in):
+        assert apart(uninterrupted, advanced(gas, 25).save()["conservative"]) < 1e-13
+
+
+def test_a_step_that_fails_does_so_as_on_the_processor():
+    params, messages = params_of(STREAM | {"courant": 9.0}), []
+    for gas in (MeshlessGas(params), DeviceGas(params, DEVICE)):
+        with pytest.raises(StepError, match="density and pressure must stay above 0") as error:
+            advanced(gas, 60)
+        messages.append(str(error.value))
+    assert messages[0] == messages[1]
+
+
+BODY = {"centre": [0.5, 0.0, 0.5], "radius": 0.1, "points_around": 16, "thickness": 0.15}
+RAREFIED = {"kind": "isothermal", "temperature": 1.0, "accommodation": {"momentum": 0.9}}
+WALLED = STREAM["boundaries"] | {"z-": RAREFIED}
+REFUSED = {
+    "moving": {"moving": {"bodies": [BODY | {"spacing": 0.05}]}, "probes": []},
+    "particles": {"particles": {}},
+    "boundaries.accommodation": {"boundaries": WALLED, "viscous": True},
+}
+
+
+@pytest.mark.parametrize("key", REFUSED)
+def test_what_devices_cannot_compute_is_refused_by_name(key):
+    params = params_of(STREAM | REFUSED[key])
+    with pytest.raises(
+        SceneError, match=rf'on device opencl, {key} must be left out; found .*set device = "cpu"'
+    ):
+        refuse_what_needs_the_processor(params, "opencl")
+
+
+def test_every_key_of_a_gas_is_supported_or_limited():
+    keys = {field.name for field in fields(MeshlessGasParams)} - {"boundaries"}
+    keys |= {f"boundaries.{field.name}" for field in fields(Boundary)}
+    limited = limits(params_of(STREAM)).keys()
+    assert keys == SUPPORTED | limited and not SUPPORTED & limited
+
+
+def test_parts_of_the_host_that_no_key_tells_of_are_refused(monkeypatch):
+    monkeypatch.setattr(device_gas, "refuse_what_needs_the_processor", lambda *_: None)
+    with pytest.raises(SceneError, match=r"on device opencl, .* found CoupledParticles\. Set"):
+        DeviceGas(params_of(STREAM | REFUSED["particles"]), DEVICE)
+
+
+def test_a_device_without_double_precision_is_refused(monkeypatch):
+    monkeypatch.setattr(Device, "has_doubles", property(lambda self: False))
+    with pytest.raises(SceneError, match=r"it must compute in double precision.*`quintet devices`"):
+        DeviceGas(params_of(STREAM), DEVICE)
+
+
+def test_a_device_that_is_not_there_is_refused():
+    with pytest.raises(SceneError, match=r"device opencl:99: .*found 1.*`quintet devices`"):
+        DeviceGas(params_of(STREAM), Resources(device="opencl:99"))
+
+
+def test_a_gas_on_the_processor_loads_no_opencl():
+    program = (
+        "import sys; from quintet.components.meshless_gas import MANIFEST; MANIFEST.load();"
+        "print([name for name in sys.modules if 'opencl' in name])"
+    )
+    result = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
+    assert result.stdout.strip() == "[]", result.stderr
