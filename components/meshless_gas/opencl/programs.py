@@ -1,10 +1,10 @@
 """The program of a gas: its laws, printed for what a scene asks for, and loops over nodes."""
 
 from pathlib import Path
-from typing import Any
 
 from quintet.components.meshless_gas.laws import boundaries, fluxes, outflows, states
 from quintet.components.meshless_gas.laws.limiters import Limiter
+from quintet.components.meshless_gas.opencl.printing import named
 from quintet.components.shared.opencl.arrays import GROUP
 from quintet.components.shared.opencl.program import Program
 from quintet.components.shared.opencl.types import LANES
@@ -86,9 +86,3 @@ def _laws(program: Program, limiter: Limiter) -> list[str]:
         named(program, states.change_square, *VECTOR),
         named(program, states.crossing_rate, VECTOR, VECTOR, VECTOR, number, number),
     ]
-
-
-def named(program: Program, law: Any, *arguments: Any) -> str:
-    """Print a law, and let kernels call it by its own name."""
-    python = getattr(law, "py_func", law)
-    return f"#define {python.__name__} {program.add(law, *arguments)[0]}"

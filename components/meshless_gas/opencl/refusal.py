@@ -7,7 +7,7 @@ from quintet.interfaces.errors import SceneError
 # that one added later is not ignored in silence.
 SUPPORTED = frozenset(
     """gas dimensions axisymmetric box sphere plate initial zones riemann vortex neighbours order
-    limiter limiter_threshold courant local_steps steady probes fronts boundaries.kind
+    limiter limiter_threshold courant viscous local_steps steady probes fronts boundaries.kind
     boundaries.state boundaries.total boundaries.pressure boundaries.velocity
     boundaries.temperature""".split()
 )
@@ -43,5 +43,4 @@ def limits(params: MeshlessGasParams) -> dict[str, tuple[object, bool, str, str]
         "boundaries.accommodation": (
             f"some of {', '.join(rarefied)}", bool(rarefied), "left out", "Remove it"
         ),
-        "viscous": (params.viscous, params.viscous, "false", "Remove it"),
     }  # fmt: skip

@@ -67,7 +67,7 @@ class Stepping:
         self._gas_constant = np.float64(params.gas.gas_constant)
         self.local_steps = params.local_steps
         self._make_room(cloud)
-        self.friction = device_friction(params, friction, self)
+        self.friction = device_friction(friction, self)
 
     def _make_room(self, cloud: DeviceCloud) -> None:
         """Make room for states, and for what a step computes of them."""
@@ -80,8 +80,8 @@ class Stepping:
         )
         self.wrong = DeviceArray(self.queue, (len(STAGES),), np.int32)
         # Sums and least numbers of groups: flows after each stage, stable steps, changes.
-        self._flow_groups = _groups(cloud.bounding.shape[0])
-        self._node_groups = _groups(cloud.inner.shape[0])
+        self._flow_groups = self.groups(cloud.bounding.shape[0])
+        self._node_groups = self.groups(cloud.inner.shape[0])
         size = 5 * len(STAGES) * self._flow_groups + 2 * self._node_groups
         self._parts = DeviceArray(self.queue, (size,))
 
@@ -89,6 +89,11 @@ class Stepping:
     def first_least(self) -> int:
         """Where, among the numbers of groups, the least stable steps begin."""
         return 5 * len(STAGES) * self._flow_groups
+
+    @staticmethod
+    def groups(rows: int) -> int:
+        """How many groups of work items a kernel over so many rows has."""
+        return -(-rows // GROUP)
 
     def run(self, name: str, rows: int, *arguments: Any) -> None:
         """Run a kernel; whole numbers are those of nodes, and floats are double."""
@@ -214,14 +219,7 @@ class Stepping:
         )
 
 
-def _groups(rows: int) -> int:
-    """How many groups of work items a kernel over so many rows has."""
-    return -(-rows // GROUP)
-
-
-def device_friction(
-    params: MeshlessGasParams, friction: WallFriction, stepping: Stepping
-) -> "DeviceFriction | None":
+def device_friction(friction: WallFriction, stepping: Stepping) -> "DeviceFriction | None":
     """Viscosity and heat conduction on a device."""
     if isinstance(friction, Inviscid):
         return None
@@ -230,4 +228,4 @@ def device_friction(
     from quintet.components.meshless_gas.viscous.terms import Viscous
 
     assert isinstance(friction, Viscous)
-    return DeviceFriction(params, friction, stepping)
+    return DeviceFriction(friction, stepping)

@@ -48,6 +48,15 @@ IN_SPACE = STREAM | {
     "box": BOX | {"spacing": 0.2},
     "boundaries": STREAM["boundaries"] | {"y-": SLIP, "y+": SLIP},
 }
+# Walls that hold the gas, one of them moving and cold.
+VISCOUS = STREAM | {
+    "viscous": True,
+    "gas": {"gas_constant": 1.0, "viscosity": 0.01, "reference_temperature": 1.0},
+    "boundaries": {
+        "z-": {"kind": "isothermal", "temperature": 0.7, "velocity": [0.5, 0.0, 0.0]},
+        "z+": {"kind": "adiabatic"},
+    },
+}
 SPHERE = {
     "axisymmetric": True,
     "gas": {"gas_constant": 1.0 / 1.4},

@@ -13,6 +13,7 @@ from device_gases import (
     SPHERE,
     STREAM,
     SUPERSONIC,
+    VISCOUS,
     advanced,
     apart,
     both,
@@ -22,7 +23,7 @@ from device_gases import (
 
 from quintet.components.meshless_gas.boundaries import Boundary
 from quintet.components.meshless_gas.component import MeshlessGas
-from quintet.components.meshless_gas.laws.limiters import LAWS
+from quintet.components.meshless_gas.laws.limiters import LAWS, limiter_of
 from quintet.components.meshless_gas.params import MeshlessGasParams
 from quintet.interfaces.component import Resources
 from quintet.interfaces.errors import SceneError, StepError
@@ -30,6 +31,7 @@ from quintet.interfaces.errors import SceneError, StepError
 pytest.importorskip("pyopencl")
 from quintet.components.meshless_gas.opencl import device_gas
 from quintet.components.meshless_gas.opencl.device_gas import DeviceGas
+from quintet.components.meshless_gas.opencl.programs import gas_program
 from quintet.components.meshless_gas.opencl.refusal import (
     SUPPORTED,
     limits,
@@ -48,6 +50,7 @@ NIGHTLY = pytest.mark.full  # programs of their own
         (SUPERSONIC, 60),
         pytest.param(STREAM | {"order": 1}, 60, marks=NIGHTLY),
         pytest.param(IN_SPACE, 60, marks=NIGHTLY),
+        pytest.param(IN_SPACE | {"viscous": True}, 60, marks=NIGHTLY),
         pytest.param(SPHERE, 60, marks=NIGHTLY),
         *(pytest.param(STREAM | {"limiter": name}, 60, marks=NIGHTLY) for name in LAWS),
     ],
@@ -67,6 +70,24 @@ def test_a_device_that_is_no_processor_gets_tables_by_columns_and_single_lanes(m
     processor, device = both(DeviceGas, SUPERSONIC, 30)
     assert not device.stepping.tables.by_rows and device.stepping.lanes == 1
     assert apart(processor.save()["conservative"], device.save()["conservative"]) < 1e-13
+
+
+@pytest.mark.parametrize("is_processor", [True, pytest.param(False, marks=NIGHTLY)])
+def test_walls_hold_and_heat_a_gas_with_friction_as_on_the_processor(is_processor, monkeypatch):
+    if not is_processor:
+        monkeypatch.setattr(Device, "is_processor", property(lambda self: False))
+    processor, device = both(DeviceGas, VISCOUS, 100)
+    first, second = processor.save(), device.save()
+    for key in ("conservative", "entered", "work"):
+        assert apart(first[key], second[key]) < 1e-12, key
+    names = frozenset({"wall.friction", "wall.heat_flux", "wall.pressure", "body.force"})
+    expected, computed = processor.give(names), device.give(names)
+    for name in names:
+        assert np.any(expected[name]) and apart(expected[name], computed[name]) < 1e-11, name
+    params = params_of(VISCOUS)
+    loaded = DeviceGas(params, DEVICE)
+    loaded.load(second)
+    same_bits(advanced(device, 10).save(), advanced(loaded, 10).save())
 
 
 def test_gauges_totals_and_views_are_those_of_the_processor():
@@ -179,3 +200,11 @@ def test_a_gas_on_the_processor_loads_no_opencl():
     )
     result = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
     assert result.stdout.strip() == "[]", result.stderr
+
+
+def test_a_gas_without_friction_prints_no_laws_of_it():
+    inviscid, viscous = (
+        gas_program(limiter_of("koren", None), True, True, has_friction, 1, False)
+        for has_friction in (False, True)
+    )
+    assert "sutherland" not in inviscid and "sutherland" in viscous

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 pytest.importorskip("pyopencl")
+from gas_laws import GAS_LAWS
 from printed_laws import (
     ROWS,
     Between,
@@ -27,7 +28,6 @@ from printed_laws import (
 
 from quintet.components.dem_bodies import laws as dem
 from quintet.components.fe_plate import laws as plate
-from quintet.components.meshless_gas.laws import fluxes, limiters, transport
 from quintet.components.particle_dynamics import laws as lattice
 from quintet.components.particle_dynamics.coefficients import PairDamping, SevenRoots
 from quintet.components.particle_dynamics.kernels import generator
@@ -78,7 +78,6 @@ ROOTS = SevenRoots(1.5, 10.0, PLACES, 1.0, (1.0,) * 3, 1.8, 5.0, 2.0, None, None
 HELD = Driven(0, 1, 2, ANY, ANY, LARGE, 0.5, 0.5, False, ANY, ANY)
 FREE = HELD._replace(is_free=True)
 COUNTERS = (1, 2**62, -(2**63))
-GAS = transport.Transport(1.7e-5, 273.0, 110.0, 1400.0, 287.0)
 GRID = Grid(-1.0, -1.0, -1.0, 7.3, 9, 11, 13, 1, 2, 0)
 MODULUS = Between(1e9, 1e11)
 SPHERE = (LARGE, LARGE, LARGE, MODULUS, MODULUS, PART, Between(1e-6, 1e-3), ANY)
@@ -197,13 +196,7 @@ LAWS = [
     Law(spheres.time_since_contact, (vector(0.5), vector(1.0), vector(0.1), Between(1.0, 2.0))),
     Law(spheres.impact_of_spheres, (vector(0.5), vector(1.0), vector(0.1), LARGE, PART, PART)),
     Law(spheres.impact_on_wall, (PART, LARGE, ANY, LARGE, PART, PART)),
-    Law(fluxes.smoothness, (PART, PART, PART, PART, PART)),
-    Law(fluxes.ausmpw, (PART, ANY, PART, PART, ANY, PART, PART, 1.4)),
-    Law(fluxes.wall_pressure, (PART, Between(-3.0, 3.0), 1.4)),
-    *(Law(law, (ANY, ANY, 0.1)) for law in (
-        limiters.van_albada, limiters.minmod, limiters.van_leer, limiters.koren, limiters.superbee,
-    )),
-    Law(transport.sutherland, (Between(100.0, 2000.0), GAS)),
+    *GAS_LAWS,
 ]  # fmt: skip
 MODULES = {inspect.getmodule(getattr(law.function, "py_func", law.function)) for law in LAWS}
 SMOOTHING = {
