@@ -39,6 +39,11 @@ def cases() -> tuple[BenchCase, ...]:
             ("vortex, 64k nodes, 9 neighbours", vortex(253), (10, 30)),
             ("box, 64k nodes, 14 neighbours", vortex(40, **space), (5, 15)),
             ("box, 300k nodes, 14 neighbours", vortex(67, **space), (2, 6)),
+            (
+                "box, 64k nodes, 14 neighbours, viscous",
+                vortex(40, **space, viscous=True),
+                (5, 15),
+            ),
         )
         if is_any_there()
     )

@@ -2,10 +2,12 @@
 
 A `MeshlessGas` on the host makes the nodes, and reads gauges, totals, views, checks and snapshots:
 states are copied into its arrays before. Between these a step brings back the flows through the
-boundary, the shortest stable step, and the change of the densities.
+boundary, the shortest stable step, and the change of the densities. Point particles are the host's:
+with them each stage copies the states.
 """
 
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 from quintet.components.meshless_gas import MANIFEST
 from quintet.components.meshless_gas.component import MeshlessGas
@@ -13,12 +15,15 @@ from quintet.components.meshless_gas.kernels.motion import STAGES
 from quintet.components.meshless_gas.opencl.refusal import refuse_what_needs_the_processor
 from quintet.components.meshless_gas.opencl.stepping import Outcome, Stepping
 from quintet.components.meshless_gas.params import MeshlessGasParams
-from quintet.components.meshless_gas.parts import FixedNodes
+from quintet.components.meshless_gas.parts import FixedNodes, WallFriction
 from quintet.components.meshless_gas.ports import SHOWS
 from quintet.components.meshless_gas.ranks.one import OneRank
 from quintet.components.shared.opencl.devices import device_of
 from quintet.interfaces.component import Component, Fields, Keys, Resources, Totals
 from quintet.interfaces.errors import SceneError
+
+if TYPE_CHECKING:
+    from quintet.components.meshless_gas.point_particles.point_particles import CoupledParticles
 
 FIRST_DEVICE = Resources(device="opencl")
 
@@ -42,20 +47,27 @@ class DeviceGas(Component):
             )
         self.params, (self.takes, self.gives) = params, self.ports_of(params)
         self.host = MeshlessGas(params, replace(resources, device="cpu"))
+        self._particles = particles(self.host)
         self._refuse_other_parts(resources.device)
-        self.stepping = Stepping(
-            params, device, resources.threads, self.host.motion.domain, self.host.friction
-        )
+        domain = self.host.motion.domain
+        self.stepping = Stepping(params, device, resources.threads, domain, self.host.friction)
+        for part in self._particles:
+            # Left out of scenes without particles.
+            from quintet.components.meshless_gas.opencl.particles import DeviceParticles
+
+            self.stepping.particles = DeviceParticles(part, domain, self.host.fluxes, self.stepping)
         self._put()
 
     def _refuse_other_parts(self, device: str) -> None:
         """Refuse parts that a step on the processor calls, and one on a device does not."""
         host = self.host
+        known = (FixedNodes, WallFriction)
         names = [
             type(part).__name__
-            for part in (host.motion, host.all_ranks, *host.parts)
-            if not isinstance(part, FixedNodes | OneRank) and part is not host.friction
+            for part in host.parts
+            if not isinstance(part, known) and part not in self._particles
         ]
+        names += [] if isinstance(host.all_ranks, OneRank) else [type(host.all_ranks).__name__]
         if names:
             raise SceneError(
                 f"on device {device}, a gas must have no parts that the processor alone "
@@ -70,12 +82,20 @@ class DeviceGas(Component):
         """Take the static fields of partners."""
         self.host.bind(static, joined)
 
+    def prime(self, fields: Fields) -> None:
+        """Take the places of particles at the start."""
+        self._get()
+        self.host.prime(fields)
+
     def stable_dt(self) -> float:
-        """Return the share `courant` of the shortest stable step."""
+        """Return the share `courant` of the shortest stable step, or what particles allow."""
+        if self._particles:
+            self._get()
         return self.host.stable_dt()
 
     def take(self, fields: Fields) -> None:
-        """Take nothing: neither bodies nor particles have partners."""
+        """Set the motion of particles that a partner moves."""
+        self.host.take(fields)
 
     def step(self, dt: float) -> None:
         """Advance by dt [s]; with local time steps, dt is the smallest."""
@@ -83,8 +103,10 @@ class DeviceGas(Component):
         if host.monitor.is_settled:
             state.time += dt
             return
-        outcome = self.stepping.step(dt, host.scheme.shortest_step)
+        for part in self._particles:
+            part.begin(dt, host.fluxes.primitive, state.conservative)
         self._is_read = False
+        outcome = self.stepping.step(dt, host.scheme.shortest_step)
         if outcome.wrong >= 0:
             self._get()
             raise host.failure([outcome.wrong], dt)
@@ -92,6 +114,8 @@ class DeviceGas(Component):
         for (_, _, share), entering in zip(STAGES, flows, strict=True):
             state.entered += share * dt * entering
             state.work += share * dt * float(entering[4])
+        for part in self._particles:
+            state.entered -= dt * part.loss_rates()
         state.time += dt
         self._follow(outcome)
         state.change = outcome.change
@@ -167,3 +191,13 @@ class DeviceGas(Component):
     def items(self) -> int:
         """Count the nodes."""
         return self.host.items()
+
+
+def particles(gas: MeshlessGas) -> "list[CoupledParticles]":
+    """Point particles of a gas on the processor."""
+    if gas.params.particles is None:
+        return []
+    # Left out of scenes without particles.
+    from quintet.components.meshless_gas.point_particles.point_particles import CoupledParticles
+
+    return [part for part in gas.parts if isinstance(part, CoupledParticles)]

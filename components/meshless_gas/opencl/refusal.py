@@ -7,8 +7,8 @@ from quintet.interfaces.errors import SceneError
 # that one added later is not ignored in silence.
 SUPPORTED = frozenset(
     """gas dimensions axisymmetric box sphere plate initial zones riemann vortex neighbours order
-    limiter limiter_threshold courant viscous local_steps steady probes fronts boundaries.kind
-    boundaries.state boundaries.total boundaries.pressure boundaries.velocity
+    limiter limiter_threshold courant viscous local_steps steady probes fronts particles
+    boundaries.kind boundaries.state boundaries.total boundaries.pressure boundaries.velocity
     boundaries.temperature""".split()
 )
 
@@ -39,7 +39,6 @@ def limits(params: MeshlessGasParams) -> dict[str, tuple[object, bool, str, str]
         "moving": (
             f"{len(bodies)} bodies", params.moving is not None, "left out", "Remove it"
         ),
-        "particles": ("a table", params.particles is not None, "left out", "Remove it"),
         "boundaries.accommodation": (
             f"some of {', '.join(rarefied)}", bool(rarefied), "left out", "Remove it"
         ),

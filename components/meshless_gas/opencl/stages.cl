@@ -33,6 +33,14 @@ __kernel void advance(
     if (!is_state(state.f0, state.f4)) atomic_max(&wrong[stage], row);
 }
 
+/* Add rates, word by word. */
+__kernel void add_rates(
+    int words, __global const double *rates, __global double *residual)
+{
+    const int word = get_global_id(0);
+    if (word < words) residual[word] += rates[word];
+}
+
 __kernel void write_sound(
     int whole, __global const double *primitive, double gamma, __global double *sound)
 {

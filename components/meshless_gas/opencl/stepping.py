@@ -10,7 +10,7 @@ from quintet.components.meshless_gas.laws.limiters import limiter_of
 from quintet.components.meshless_gas.opencl.device_cloud import DeviceCloud
 from quintet.components.meshless_gas.opencl.programs import gas_program
 from quintet.components.meshless_gas.params import MeshlessGasParams
-from quintet.components.meshless_gas.parts import Inviscid, WallFriction
+from quintet.components.meshless_gas.parts import Inviscid, Stage, WallFriction
 from quintet.components.shared.opencl.arrays import GROUP, DeviceArray, run
 from quintet.components.shared.opencl.devices import Device, build
 from quintet.components.shared.opencl.tables import Tables
@@ -19,6 +19,7 @@ from quintet.interfaces.component import Array
 
 if TYPE_CHECKING:
     from quintet.components.meshless_gas.opencl.friction import DeviceFriction
+    from quintet.components.meshless_gas.opencl.particles import DeviceParticles
 
 LANES_OF_PROCESSORS = 4  # doubles in one of its vectors; other devices make lanes of rows
 
@@ -68,6 +69,7 @@ class Stepping:
         self.local_steps = params.local_steps
         self._make_room(cloud)
         self.friction = device_friction(friction, self)
+        self.particles: DeviceParticles | None = None
 
     def _make_room(self, cloud: DeviceCloud) -> None:
         """Make room for states, and for what a step computes of them."""
@@ -120,8 +122,8 @@ class Stepping:
         cloud, inner = self.cloud, self.cloud.inner
         sizes = np.int32(inner.shape[0]), np.int32(cloud.nodes), np.int32(cloud.whole)
         local = np.float64(shortest if self.local_steps else 0.0)
-        for number, (old, new, _) in enumerate(STAGES):
-            self._write_rates()
+        for number, (old, new, weight) in enumerate(STAGES):
+            self._write_rates(dt, (old, new, weight))
             shares = map(np.float64, (dt, local, old, new))
             self.run(
                 "advance", inner.shape[0], *sizes, np.int32(number), *shares, self._gamma, inner,
@@ -137,8 +139,8 @@ class Stepping:
         self._find_stable_steps()
         return self._outcome()
 
-    def _write_rates(self) -> None:
-        """Write the rates of change of density, momentum and energy."""
+    def _write_rates(self, dt: float, stage: Stage) -> None:
+        """Write the rates of change of density, momentum and energy in a stage of a step [s]."""
         cloud, inner = self.cloud, self.cloud.inner
         whole, width = np.int32(cloud.whole), np.int32(cloud.width)
         nodes, stencils = np.int32(cloud.nodes), (cloud.neighbours, cloud.coefficients)
@@ -157,6 +159,8 @@ class Stepping:
         )  # fmt: skip
         if self.friction:
             self.friction.add_rates()
+        if self.particles:
+            self.particles.add_rates(dt, stage)
 
     def _apply_boundaries(self, stage: int) -> None:
         """Write the states of boundary nodes and ghosts; sum what enters after a stage."""

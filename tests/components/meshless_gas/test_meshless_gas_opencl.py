@@ -23,6 +23,7 @@ from device_gases import (
 
 from quintet.components.meshless_gas.boundaries import Boundary
 from quintet.components.meshless_gas.component import MeshlessGas
+from quintet.components.meshless_gas.conform import cases
 from quintet.components.meshless_gas.laws.limiters import LAWS, limiter_of
 from quintet.components.meshless_gas.params import MeshlessGasParams
 from quintet.interfaces.component import Resources
@@ -90,6 +91,26 @@ def test_walls_hold_and_heat_a_gas_with_friction_as_on_the_processor(is_processo
     same_bits(advanced(device, 10).save(), advanced(loaded, 10).save())
 
 
+def test_point_particles_and_gas_push_and_heat_each_other_as_on_the_processor():
+    (case,) = (case for case in cases() if case.name == "particles in a gas")
+    params, gases = params_of(case.params), []
+    warm = case.rest | {"particles.temperature": np.full(2, 400.0)}
+    warm["particles.velocity"] = np.array([[30.0, 0.0, 5.0], [0.0, 0.0, -20.0]])
+    loaded = DeviceGas(params, DEVICE)
+    for gas in (MeshlessGas(params), DeviceGas(params, DEVICE), loaded):
+        gas.bind(case.static, frozenset(case.static))
+        gas.prime(warm)
+        gas.take(warm)
+        gases.append(gas if gas is loaded else advanced(gas, 40))
+    processor, device, _ = gases
+    first, second = processor.save(), device.save()
+    assert first.keys() == second.keys()
+    for key in ("conservative", "entered", "particles.force", "particles.heat"):
+        assert np.any(first[key]) and apart(first[key], second[key]) < 1e-11, key
+    loaded.load(second)
+    same_bits(advanced(device, 5).save(), advanced(loaded, 5).save())
+
+
 def test_gauges_totals_and_views_are_those_of_the_processor():
     processor, device = both(DeviceGas, STREAM, 40)
     names = frozenset(f"{p.name}.{f.name}" for p in device.gives for f in p.fields)
@@ -155,7 +176,6 @@ RAREFIED = {"kind": "isothermal", "temperature": 1.0, "accommodation": {"momentu
 WALLED = STREAM["boundaries"] | {"z-": RAREFIED}
 REFUSED = {
     "moving": {"moving": {"bodies": [BODY | {"spacing": 0.05}]}, "probes": []},
-    "particles": {"particles": {}},
     "boundaries.accommodation": {"boundaries": WALLED, "viscous": True},
 }
 
@@ -178,8 +198,8 @@ def test_every_key_of_a_gas_is_supported_or_limited():
 
 def test_parts_of_the_host_that_no_key_tells_of_are_refused(monkeypatch):
     monkeypatch.setattr(device_gas, "refuse_what_needs_the_processor", lambda *_: None)
-    with pytest.raises(SceneError, match=r"on device opencl, .* found CoupledParticles\. Set"):
-        DeviceGas(params_of(STREAM | REFUSED["particles"]), DEVICE)
+    with pytest.raises(SceneError, match=r"on device opencl, .* found MovingClouds\. Set"):
+        DeviceGas(params_of(STREAM | REFUSED["moving"]), DEVICE)
 
 
 def test_a_device_without_double_precision_is_refused(monkeypatch):

@@ -8,11 +8,14 @@ import pytest
 from numba import njit
 
 from quintet.components.shared.opencl.program import Program
-from quintet.components.shared.opencl.types import REAL, bytes_of, memory_type, type_of
+from quintet.components.shared.opencl.types import LANES, REAL, bytes_of, memory_type, type_of
 from quintet.components.shared.smoothing import cubic_spline
 
 pytest.importorskip("pyopencl")
 from printed_laws import ROWS, Between, Law, draw, run_by_numba, run_on_device, ulps, vector
+
+from quintet.components.shared.opencl.arrays import DeviceArray
+from quintet.components.shared.opencl.devices import build, device_of
 
 HALF = 0.5
 WHOLE = np.int8(3)
@@ -130,6 +133,16 @@ def flags(a, on):
     return 2.0 if is_large and on else 3.0, is_large
 
 
+def truths_together(a, b):
+    return ((a > 0.0) & (b > 0.0)), ((a > 0.0) | (b > 0.0)), ((a > 0.0) ^ (b > 0.0))
+
+
+def chosen(a, b):
+    """Of lanes too: nothing branches."""
+    is_near = (a > -1.0) & (-2.0 < b <= 2.0)
+    return a * b if is_near else (a if a > b else -1.0)
+
+
 def unicode_names(ρ, μ_r, half, kernel):
     """Names in other alphabets, and names reserved in C."""
     double = ρ * μ_r
@@ -158,6 +171,8 @@ LAWS = [
     Law(reads_records, (Outer(Inner(True, ANY), 3), ANY), name=" that are on"),
     Law(reads_records, (Outer(Inner(None, ANY), 3), ANY), name=" that are off"),
     Law(flags, (ANY, True)),
+    Law(truths_together, (ANY, ANY)),
+    Law(chosen, (ANY, ANY)),
     Law(unicode_names, (ANY, ANY, ANY, ANY)),
 ]
 
@@ -226,3 +241,29 @@ def test_structs_lie_in_memory_as_the_device_has_them():
     off = memory_type(type_of(Outer(Inner(None, 2.5), 3)), np.float32)
     assert off.fields["inner"][0].names == ("scale",) and off.itemsize == 16
     assert memory_type(REAL, np.float32) == np.float32
+
+
+LANEWISE = """
+__kernel void choose(__global const reals *a, __global const reals *b, __global reals *result)
+{
+    const int i = get_global_id(0);
+    result[i] = NAME(a[i], b[i]);
+}
+"""
+
+
+@pytest.mark.parametrize("lanes", [1, 4])
+def test_lanes_choose_each_for_itself(lanes):
+    program = Program("double", lanes)
+    name, kind = program.add(chosen, LANES, LANES)
+    assert kind == LANES
+    queue = device_of("opencl").queue()
+    kernel = build(queue, program.text + LANEWISE.replace("NAME", name)).choose
+    a, b = np.random.default_rng(3).uniform(-5.0, 5.0, (2, 64))
+    result = DeviceArray(queue, a.shape)
+    kernel(
+        queue, (len(a) // lanes,), None,
+        *(array.memory for array in (DeviceArray.of(queue, a), DeviceArray.of(queue, b), result)),
+    )  # fmt: skip
+    expected = [chosen(*pair) for pair in zip(a, b, strict=True)]
+    assert np.array_equal(result.get(), expected)

@@ -260,6 +260,10 @@ def shortens(x):
     return 0.0
 
 
+def joins_truths(x):
+    return 1.0 if x > 0.0 and x < 1.0 else 0.0
+
+
 def rounds_down(x):
     return x // 2.0
 
@@ -272,7 +276,7 @@ def notices(x):
     return math.isnan(x)
 
 
-@pytest.mark.parametrize("law", [shortens, rounds_down, counts, notices])
+@pytest.mark.parametrize("law", [shortens, joins_truths, rounds_down, counts, notices])
 def test_what_lanes_cannot_do_together_is_refused(law):
     with pytest.raises(PrintError, match=r"of several lanes\. Print it for one lane, or use min"):
         Program("double", lanes=4).add(law, LANES)

@@ -1,0 +1,47 @@
+"""Point particles in a gas on a device; only for a scene that has some.
+
+What particle and gas give each other is computed on the host, from the states of a stage: these are
+copied to it, and the rates of momentum and energy back.
+"""
+
+import numpy as np
+
+from quintet.components.meshless_gas.build import Domain
+from quintet.components.meshless_gas.opencl.stepping import Stepping
+from quintet.components.meshless_gas.parts import Stage
+from quintet.components.meshless_gas.point_particles.point_particles import CoupledParticles
+from quintet.components.meshless_gas.state import Fluxes
+
+
+class DeviceParticles:
+    """The exchange of particles with one gas.
+
+    Parameters
+    ----------
+    particles : CoupledParticles
+        Those of the host.
+    domain : Domain
+    work : Fluxes
+        Of the host; its states and residuals are overwritten.
+    stepping : Stepping
+        Of the gas.
+    """
+
+    def __init__(
+        self, particles: CoupledParticles, domain: Domain, work: Fluxes, stepping: Stepping
+    ) -> None:
+        self.particles, self.domain, self.work, self.stepping = particles, domain, work, stepping
+        self._rates = stepping.tables.empty(stepping.cloud.nodes, 5)
+
+    def add_rates(self, dt: float, stage: Stage) -> None:
+        """Exchange momentum and heat in a stage of a step [s]."""
+        work, stepping, tables = self.work, self.stepping, self.stepping.tables
+        work.primitive[:] = tables.get(stepping.primitive)
+        work.residual[:] = 0.0
+        self.particles.add_rates(self.domain, work, dt, stage)
+        if self.particles.exchange.reaction:
+            tables.put(self._rates, work.residual)
+            words = 5 * stepping.cloud.nodes
+            stepping.run(
+                "add_rates", words, np.int32(words), self._rates, stepping.residual
+            )  # fmt: skip
