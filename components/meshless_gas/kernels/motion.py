@@ -50,13 +50,13 @@ def write_bounds(
         fx = fy = fz = 0.0
         if frame is not None:
             fx, fy, fz = frame[i, 0], frame[i, 1], frame[i, 2]
-        own = (primitive[i, 1] - fx, primitive[i, 2] - fy, primitive[i, 3] - fz)
+        velocity_i = (primitive[i, 1] - fx, primitive[i, 2] - fy, primitive[i, 3] - fz)
         summed = 0.0
         for k in range(neighbours.shape[1]):
             j = np.uintp(neighbours[i, k])
             coefficient = (coefficients[i, k, 0], coefficients[i, k, 1], coefficients[i, k, 2])
-            other = (primitive[j, 1] - fx, primitive[j, 2] - fy, primitive[j, 3] - fz)
-            summed += crossing_rate(own, other, coefficient, sound[i], sound[j])
+            velocity_j = (primitive[j, 1] - fx, primitive[j, 2] - fy, primitive[j, 3] - fz)
+            summed += crossing_rate(velocity_i, velocity_j, coefficient, sound[i], sound[j])
         bounds[i] = 1.0 / summed
         least = min(least, bounds[i])
     return least

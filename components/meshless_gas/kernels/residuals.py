@@ -189,15 +189,15 @@ def add_fluxes(planar, sloped, gamma, limiter, work):  # type: ignore[no-untyped
             v, vr = work[(OWN + 2) * LANES + lane], work[(OTHER + 2) * LANES + lane]
             cy = work[(COEFFICIENT + 1) * LANES + lane]
         lowest_i, lowest_j = work[OWN_LEAST * LANES + lane], work[OTHER_LEAST * LANES + lane]
-        own, other = (r, u, v, w, p), (rr, ur, vr, wr, pr)
+        state_i, state_j = (r, u, v, w, p), (rr, ur, vr, wr, pr)
         direction = pair_direction(cx, cy, cz)
-        left, right = own, other
+        left, right = state_i, state_j
         if sloped is not None:
-            keep = kept_share(own, other, direction, lowest_i, lowest_j)
-            eps_r, eps_p, eps_v = thresholds(own, other, limiter)
+            keep = kept_share(state_i, state_j, direction, lowest_i, lowest_j)
+            eps_r, eps_p, eps_v = thresholds(state_i, state_j, limiter)
             density = change(work, 0, lane, rr - r, limiter, eps_r, planar)
             pressure = change(work, 4, lane, pr - p, limiter, eps_p, planar)
-            keep = positive_share(keep, own, other, density, pressure)
+            keep = positive_share(keep, state_i, state_j, density, pressure)
             rl, rr = sides(r, rr, keep, density)
             pl, pr = sides(p, pr, keep, pressure)
             along_x = change(work, 1, lane, ur - u, limiter, eps_v, planar)
@@ -209,7 +209,7 @@ def add_fluxes(planar, sloped, gamma, limiter, work):  # type: ignore[no-untyped
                 along_y = change(work, 2, lane, vr - v, limiter, eps_v, planar)
                 vl, vr = sides(v, vr, keep, along_y)
             left, right = (rl, ul, vl, wl, pl), (rr, ur, vr, wr, pr)
-        rates = pair_rates(own, left, right, direction, min(lowest_i, lowest_j), gamma)
+        rates = pair_rates(state_i, left, right, direction, min(lowest_i, lowest_j), gamma)
         work[SUM * LANES + lane] += rates[0]
         work[(SUM + 1) * LANES + lane] += rates[1]
         work[(SUM + 3) * LANES + lane] += rates[3]

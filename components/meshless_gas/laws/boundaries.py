@@ -47,7 +47,7 @@ def boundary_state(kind, near, outer, normal, velocity, gamma, gas_constant):  #
 @njit(**INNER)
 def come_in(near, outer, normal, gamma):  # type: ignore[no-untyped-def]
     """State of gas that comes in: the given one; slower than sound it lets waves out."""
-    given = (outer[0], outer[1], outer[2], outer[3], outer[4])
+    beyond = (outer[0], outer[1], outer[2], outer[3], outer[4])
     into = outer[1] * normal[0] + outer[2] * normal[1] + outer[3] * normal[2]
     sound = math.sqrt(gamma * outer[4] / outer[0])
     same = (
@@ -58,8 +58,8 @@ def come_in(near, outer, normal, gamma):  # type: ignore[no-untyped-def]
         and abs(near[4] - outer[4]) <= NOISE * outer[4]
     )
     if not same and into < sound:
-        return meet(near, given, normal, gamma)
-    return given
+        return meet(near, beyond, normal, gamma)
+    return beyond
 
 
 @njit(**INNER)

@@ -102,20 +102,20 @@ def pair_direction(cx, cy, cz):  # type: ignore[no-untyped-def]
 
 
 @njit(inline="always")
-def kept_share(own, other, direction, lowest_i, lowest_j):  # type: ignore[no-untyped-def]
+def kept_share(state_i, state_j, direction, lowest_i, lowest_j):  # type: ignore[no-untyped-def]
     """Share of the slopes [1] that a pair keeps, by the pressures around it and how it closes.
 
     Parameters
     ----------
-    own, other : (5,) kg/m3, m/s, Pa
+    state_i, state_j : (5,) kg/m3, m/s, Pa
         States of both nodes.
     direction : (4,) 1/m, 1
         As `pair_direction` has it.
     lowest_i, lowest_j : float, Pa
         Least pressures around both.
     """
-    r, u, v, w, p = own
-    rr, ur, vr, wr, pr = other
+    r, u, v, w, p = state_i
+    rr, ur, vr, wr, pr = state_j
     _, x, y, z = direction
     closing = max((u - ur) * x + (v - vr) * y + (w - wr) * z, 0.0)
     ram = min(r, rr) * closing * closing
@@ -123,27 +123,27 @@ def kept_share(own, other, direction, lowest_i, lowest_j):  # type: ignore[no-un
 
 
 @njit(inline="always")
-def thresholds(own, other, limiter):  # type: ignore[no-untyped-def]
+def thresholds(state_i, state_j, limiter):  # type: ignore[no-untyped-def]
     """Squares [kg2/m6, Pa2, m2/s2] beside which smaller ones of differences are not limited."""
-    mean_r, mean_p, threshold = own[0] + other[0], own[4] + other[4], limiter.threshold
+    mean_r, mean_p, threshold = state_i[0] + state_j[0], state_i[4] + state_j[4], limiter.threshold
     eps_r = threshold * mean_r * mean_r
     eps_p = threshold * mean_p * mean_p
     return eps_r, eps_p, threshold * mean_p / mean_r
 
 
 @njit(inline="always")
-def positive_share(keep, own, other, density, pressure):  # type: ignore[no-untyped-def]
+def positive_share(keep, state_i, state_j, density, pressure):  # type: ignore[no-untyped-def]
     """Share of the slopes that is kept: 0 where little density or pressure would be left.
 
     Parameters
     ----------
     keep : float, 1
-    own, other : (5,) kg/m3, m/s, Pa
+    state_i, state_j : (5,) kg/m3, m/s, Pa
         States of both nodes.
     density, pressure : (2,) kg/m3, Pa
         Their changes from both nodes to the middle of the pair.
     """
-    r, p, rr, pr = own[0], own[4], other[0], other[4]
+    r, p, rr, pr = state_i[0], state_i[4], state_j[0], state_j[4]
     a, b = density
     c, d = pressure
     least_r, least_p = LEAST * min(r, rr), LEAST * min(p, pr)
@@ -163,12 +163,12 @@ def sides(value_i, value_j, keep, changes):  # type: ignore[no-untyped-def]
 
 
 @njit(inline="always")
-def pair_rates(own, left, right, direction, lowest, gamma):  # type: ignore[no-untyped-def]
+def pair_rates(state_i, left, right, direction, lowest, gamma):  # type: ignore[no-untyped-def]
     """Rates of density, momentum and energy of a node by the flux between it and a neighbour.
 
     Parameters
     ----------
-    own, left, right : (5,) kg/m3, m/s, Pa
+    state_i, left, right : (5,) kg/m3, m/s, Pa
         States of the node and on both sides of the pair's middle, in the node's frame.
     direction : (4,) 1/m, 1
         As `pair_direction` has it.
@@ -186,7 +186,7 @@ def pair_rates(own, left, right, direction, lowest, gamma):  # type: ignore[no-u
     Katz & Jameson, AIAA J. 48 (2010) 1756, section II.
     """
     heat = gamma / (gamma - 1.0)
-    r, u, v, w, p = own
+    r, u, v, w, p = state_i
     rl, ul, vl, wl, pl = left
     rr, ur, vr, wr, pr = right
     size, x, y, z = direction

@@ -46,13 +46,13 @@ def change_square(rate, bound, density):  # type: ignore[no-untyped-def]
 
 
 @njit(**FAST_INNER)
-def crossing_rate(own, other, coefficient, sound_i, sound_j):  # type: ignore[no-untyped-def]
+def crossing_rate(velocity_i, velocity_j, coefficient, sound_i, sound_j):  # type: ignore[no-untyped-def]
     """What a neighbour adds to one over the stable step [1/s] of a node.
 
     max(|v_i·c_ij|, |v_j·c_ij|) + max(a_i, a_j) |c_ij|, velocities (3,) in the node's frame.
     """
     x, y, z = coefficient
-    carried = abs(own[0] * x + own[1] * y + own[2] * z)
-    reached = abs(other[0] * x + other[1] * y + other[2] * z)
+    carried = abs(velocity_i[0] * x + velocity_i[1] * y + velocity_i[2] * z)
+    reached = abs(velocity_j[0] * x + velocity_j[1] * y + velocity_j[2] * z)
     size = math.sqrt(x * x + y * y + z * z)
     return max(carried, reached) + max(sound_i, sound_j) * size

@@ -55,7 +55,9 @@ class DeviceGas(Component):
             # Left out of scenes without particles.
             from quintet.components.meshless_gas.opencl.particles import DeviceParticles
 
-            self.stepping.particles = DeviceParticles(part, domain, self.host.fluxes, self.stepping)
+            self.stepping.particles = DeviceParticles(
+                part, domain, self.host.fluxes, self.stepping.state
+            )
         self._put()
 
     def _refuse_other_parts(self, device: str) -> None:
@@ -140,7 +142,7 @@ class DeviceGas(Component):
         if self._is_read:
             return
         host = self.host
-        self.stepping.get(host.fluxes.primitive, host.state.conservative)
+        self.stepping.state.get(host.fluxes.primitive, host.state.conservative)
         host.friction.add_flows(host.motion.domain, host.fluxes.primitive, host.fluxes.flows.copy())
         self._is_read = True
 

@@ -9,10 +9,10 @@
         + OF_SPACE(GATHERED(gradients, i, 3 * q + 1, 15, whole) * y) \
         + GATHERED(gradients, i, 3 * q + 2, 15, whole) * z)
 #define LIMITED(q, part, threshold) \
-    half_steps(limiter, SLOPE(i, q), SLOPE(j, q), other.part - own.part, threshold)
+    half_steps(limiter, SLOPE(i, q), SLOPE(j, q), state_j.part - state_i.part, threshold)
 #define SPLIT(part, changes) \
     do { \
-        const PairOfLanes both = sides(own.part, other.part, keep, changes); \
+        const PairOfLanes both = sides(state_i.part, state_j.part, keep, changes); \
         left.part = both.f0, right.part = both.f1; \
     } while (0)
 #ifdef PLANAR
@@ -32,30 +32,30 @@ __kernel void write_residuals(
     if (begin >= count) return;
 #define INNER_NODE(lane) rows[min(begin + lane, count - 1)]
     NODES_OF(i, INNER_NODE);
-    const States own = STATES_OF(i);
-    const reals own_least = GATHERED(lowest, i, 0, 1, whole);
+    const States state_i = STATES_OF(i);
+    const reals least_i = GATHERED(lowest, i, 0, 1, whole);
     States sum = {0, 0, 0, 0, 0};
     for (int k = 0; k < width; k++) {
 #define NEIGHBOUR(lane) neighbours[AT(i##lane, k, width, whole)]
         NODES_OF(j, NEIGHBOUR);
         if (ARE_SAME(i, j)) continue; /* rows are padded with the node itself */
-        const States other = STATES_OF(j);
+        const States state_j = STATES_OF(j);
         const Directions direction = pair_direction(
             GATHERED(coefficients, i, 3 * k, 3 * width, whole),
             OF_SPACE(GATHERED(coefficients, i, 3 * k + 1, 3 * width, whole)),
             GATHERED(coefficients, i, 3 * k + 2, 3 * width, whole));
-        const reals least = GATHERED(lowest, j, 0, 1, whole);
-        States left = own, right = other;
+        const reals least_j = GATHERED(lowest, j, 0, 1, whole);
+        States left = state_i, right = state_j;
 #ifdef SLOPED
         const reals x = GATHERED(positions, j, 0, 3, whole) - GATHERED(positions, i, 0, 3, whole);
         const reals z = GATHERED(positions, j, 2, 3, whole) - GATHERED(positions, i, 2, 3, whole);
 #ifndef PLANAR
         const reals y = GATHERED(positions, j, 1, 3, whole) - GATHERED(positions, i, 1, 3, whole);
 #endif
-        const Thresholds eps = thresholds(own, other, limiter);
+        const Thresholds eps = thresholds(state_i, state_j, limiter);
         const PairOfLanes density = LIMITED(0, f0, eps.f0), pressure = LIMITED(4, f4, eps.f1);
-        const reals share = kept_share(own, other, direction, own_least, least);
-        const reals keep = positive_share(share, own, other, density, pressure);
+        const reals share = kept_share(state_i, state_j, direction, least_i, least_j);
+        const reals keep = positive_share(share, state_i, state_j, density, pressure);
         SPLIT(f0, density);
         SPLIT(f4, pressure);
         const PairOfLanes u = LIMITED(1, f1, eps.f2), w = LIMITED(3, f3, eps.f2);
@@ -67,7 +67,7 @@ __kernel void write_residuals(
 #endif
 #endif
         const States rates =
-            pair_rates(own, left, right, direction, min_reals(own_least, least), gamma);
+            pair_rates(state_i, left, right, direction, min_reals(least_i, least_j), gamma);
         sum.f0 += rates.f0;
         sum.f1 += rates.f1;
         sum.f2 += rates.f2;

@@ -43,8 +43,8 @@ __kernel void write_ghost_slopes(
 {
     const int g = get_global_id(0), i = nodes + g;
     if (i >= whole) return;
-    const Vector own = vector_at(slopes, owner[g], whole);
-    const double3 slope = turned(turn, g, (double3)(own.f0, own.f1, own.f2));
+    const Vector slope_of_owner = vector_at(slopes, owner[g], whole);
+    const double3 slope = turned(turn, g, (double3)(slope_of_owner.f0, slope_of_owner.f1, slope_of_owner.f2));
     slopes[AT(i, 0, 3, whole)] = slope.x;
     slopes[AT(i, 1, 3, whole)] = slope.y;
     slopes[AT(i, 2, 3, whole)] = slope.z;
@@ -69,7 +69,7 @@ __kernel void add_friction(
     const int begin = get_global_id(0) * LANES;
     if (begin >= count) return;
     NODES_OF(i, INNER_NODE);
-    const Vectors own = VECTORS_OF(primitive, i, 1, 5), t = VECTORS_OF(slopes, i, 0, 3);
+    const Vectors velocity_i = VECTORS_OF(primitive, i, 1, 5), t = VECTORS_OF(slopes, i, 0, 3);
     const Gradients g = GRADIENTS_OF(i);
     const reals temperature = GATHERED(transported, i, 0, 2, whole);
     const reals mu = GATHERED(transported, i, 1, 2, whole);
@@ -78,7 +78,7 @@ __kernel void add_friction(
     for (int k = 0; k < width; k++) {
         NODES_OF(j, NEIGHBOUR);
         if (ARE_SAME(i, j)) continue;
-        const Vectors other = VECTORS_OF(primitive, j, 1, 5), s = VECTORS_OF(slopes, j, 0, 3);
+        const Vectors velocity_j = VECTORS_OF(primitive, j, 1, 5), s = VECTORS_OF(slopes, j, 0, 3);
         const Gradients h = GRADIENTS_OF(j);
         const Vectors c = VECTORS_OF(coefficients, i, 3 * k, 3 * width);
         const Vectors r = {
@@ -90,12 +90,12 @@ __kernel void add_friction(
         const reals rise = GATHERED(transported, j, 0, 2, whole) - temperature;
         const reals mean = 0.5 * (mu + GATHERED(transported, j, 1, 2, whole));
         const Directions transfer =
-            pair_transfer(own, other, g, h, t, s, rise, r, inverse, c, mean, law);
+            pair_transfer(velocity_i, velocity_j, g, h, t, s, rise, r, inverse, c, mean, law);
         sum.f0 += transfer.f0, sum.f1 += transfer.f1;
         sum.f2 += transfer.f2, sum.f3 += transfer.f3;
         along.f0 += c.f0, along.f1 += c.f1, along.f2 += c.f2;
     }
-    const Directions less = own_transfer(own, g, t, along, mu, law);
+    const Directions less = own_transfer(velocity_i, g, t, along, mu, law);
     const reals x = GATHERED(residual, i, 1, 5, nodes) + 2.0 * (sum.f0 - less.f0);
     const reals y = GATHERED(residual, i, 2, 5, nodes) + 2.0 * (sum.f1 - less.f1);
     const reals z = GATHERED(residual, i, 3, 5, nodes) + 2.0 * (sum.f2 - less.f2);

@@ -24,17 +24,17 @@ __kernel void write_gradients(
 {
     const int i = get_global_id(0);
     if (i >= nodes) return;
-    const State own = state_at(primitive, i, whole);
+    const State state = state_at(primitive, i, whole);
     double3 r = 0, u = 0, v = 0, w = 0, p = 0;
-    double least = own.f4;
+    double least = state.f4;
     for (int k = 0; k < width; k++) {
         const State other = state_at(primitive, neighbours[AT(i, k, width, whole)], whole);
         const double3 c = coefficient_at(coefficients, i, k, width, whole);
-        r += c * (other.f0 - own.f0);
-        u += c * (other.f1 - own.f1);
-        v += c * (other.f2 - own.f2);
-        w += c * (other.f3 - own.f3);
-        p += c * (other.f4 - own.f4);
+        r += c * (other.f0 - state.f0);
+        u += c * (other.f1 - state.f1);
+        v += c * (other.f2 - state.f2);
+        w += c * (other.f3 - state.f3);
+        p += c * (other.f4 - state.f4);
         least = min_real(least, other.f4);
     }
     store_gradient(r, 0, gradients, i, whole);

@@ -7,7 +7,7 @@ copied to it, and the rates of momentum and energy back.
 import numpy as np
 
 from quintet.components.meshless_gas.build import Domain
-from quintet.components.meshless_gas.opencl.stepping import Stepping
+from quintet.components.meshless_gas.opencl.device_state import DeviceState
 from quintet.components.meshless_gas.parts import Stage
 from quintet.components.meshless_gas.point_particles.point_particles import CoupledParticles
 from quintet.components.meshless_gas.state import Fluxes
@@ -23,25 +23,25 @@ class DeviceParticles:
     domain : Domain
     work : Fluxes
         Of the host; its states and residuals are overwritten.
-    stepping : Stepping
+    state : DeviceState
         Of the gas.
     """
 
     def __init__(
-        self, particles: CoupledParticles, domain: Domain, work: Fluxes, stepping: Stepping
+        self, particles: CoupledParticles, domain: Domain, work: Fluxes, state: DeviceState
     ) -> None:
-        self.particles, self.domain, self.work, self.stepping = particles, domain, work, stepping
-        self._rates = stepping.tables.empty(stepping.cloud.nodes, 5)
+        self.particles, self.domain, self.work, self.state = particles, domain, work, state
+        self._rates = state.tables.empty(state.cloud.nodes, 5)
 
     def add_rates(self, dt: float, stage: Stage) -> None:
         """Exchange momentum and heat in a stage of a step [s]."""
-        work, stepping, tables = self.work, self.stepping, self.stepping.tables
-        work.primitive[:] = tables.get(stepping.primitive)
+        work, state, tables = self.work, self.state, self.state.tables
+        work.primitive[:] = tables.get(state.primitive)
         work.residual[:] = 0.0
         self.particles.add_rates(self.domain, work, dt, stage)
         if self.particles.exchange.reaction:
             tables.put(self._rates, work.residual)
-            words = 5 * stepping.cloud.nodes
-            stepping.run(
-                "add_rates", words, np.int32(words), self._rates, stepping.residual
+            words = 5 * state.cloud.nodes
+            state.run(
+                "add_rates", words, np.int32(words), self._rates, state.residual
             )  # fmt: skip

@@ -63,16 +63,16 @@ __kernel void write_bounds(
     if (row < count) {
         const int i = rows[row];
         const State a = state_at(primitive, i, whole);
-        const Vector own = {a.f1, a.f2, a.f3};
+        const Vector velocity_i = {a.f1, a.f2, a.f3};
         double summed = 0;
         for (int k = 0; k < width; k++) {
             const int j = neighbours[AT(i, k, width, whole)];
-            const Vector other = {
+            const Vector velocity_j = {
                 primitive[AT(j, 1, 5, whole)], primitive[AT(j, 2, 5, whole)],
                 primitive[AT(j, 3, 5, whole)]};
             const double3 c = coefficient_at(coefficients, i, k, width, whole);
             const Vector coefficient = {c.x, c.y, c.z};
-            summed += crossing_rate(own, other, coefficient, sound[i], sound[j]);
+            summed += crossing_rate(velocity_i, velocity_j, coefficient, sound[i], sound[j]);
         }
         bounds[i] = least[item] = 1.0 / summed;
     }

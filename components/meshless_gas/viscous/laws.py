@@ -53,13 +53,13 @@ def along(tensor, x, y, z):  # type: ignore[no-untyped-def]
 
 @njit(inline="always")
 def pair_transfer(  # type: ignore[no-untyped-def]
-    own, other, g, h, t, s, rise, r, inverse, coefficient, mu, law
+    velocity_i, velocity_j, g, h, t, s, rise, r, inverse, coefficient, mu, law
 ):
     """Friction and conduction between two nodes, along their coefficient.
 
     Parameters
     ----------
-    own, other : (3,) m/s
+    velocity_i, velocity_j : (3,) m/s
         Velocities of both nodes.
     g, h : (5, 3)
         Gradients of their density, velocity and pressure.
@@ -79,8 +79,8 @@ def pair_transfer(  # type: ignore[no-untyped-def]
         τ·c, and (τ·v + λ∇T)·c.
     """
     cx, cy, cz = coefficient
-    u, v, w = own
-    a, b, c = other
+    u, v, w = velocity_i
+    a, b, c = velocity_j
     tensor = stress(
         corrected(g[1], h[1], a - u, r, inverse),
         corrected(g[2], h[2], b - v, r, inverse),
@@ -94,9 +94,9 @@ def pair_transfer(  # type: ignore[no-untyped-def]
 
 
 @njit(inline="always")
-def own_transfer(own, g, t, whole, mu, law):  # type: ignore[no-untyped-def]
+def own_transfer(velocity_i, g, t, whole, mu, law):  # type: ignore[no-untyped-def]
     """As `pair_transfer`, by the node's own gradients along the sum (3,) 1/m of coefficients."""
-    u, v, w = own
+    u, v, w = velocity_i
     px, py, pz = along(stress(g[1], g[2], g[3], mu), whole[0], whole[1], whole[2])
     heat = law.conduction * mu * (t[0] * whole[0] + t[1] * whole[1] + t[2] * whole[2])
     return px, py, pz, px * u + py * v + pz * w + heat
@@ -147,7 +147,7 @@ def wall_traction(state, first, second, near, far, velocity, normal, law):  # ty
     Parameters
     ----------
     state, first, second : (5,) kg/m3, m/s, Pa
-        On the wall and at two nodes above it.
+        On the wall and at far_temperature nodes above it.
     near, far : float, m
         Heights of these.
     velocity, normal : (3,) m/s and 1
@@ -160,9 +160,9 @@ def wall_traction(state, first, second, near, far, velocity, normal, law):  # ty
     """
     wall = gas_temperature(state[0], state[4], law.gas_constant)
     mu = sutherland(wall, law)
-    one = gas_temperature(first[0], first[4], law.gas_constant)
-    two = gas_temperature(second[0], second[4], law.gas_constant)
-    heat = law.conduction * mu * wall_slope(wall, one, two, near, far)
+    near_temperature = gas_temperature(first[0], first[4], law.gas_constant)
+    far_temperature = gas_temperature(second[0], second[4], law.gas_constant)
+    heat = law.conduction * mu * wall_slope(wall, near_temperature, far_temperature, near, far)
     x = mu * wall_slope(velocity[0], first[1], second[1], near, far)
     y = mu * wall_slope(velocity[1], first[2], second[2], near, far)
     z = mu * wall_slope(velocity[2], first[3], second[3], near, far)

@@ -69,7 +69,7 @@ def test_a_device_computes_as_the_processor_does(table, steps):
 def test_a_device_that_is_no_processor_gets_tables_by_columns_and_single_lanes(monkeypatch):
     monkeypatch.setattr(Device, "is_processor", property(lambda self: False))
     processor, device = both(DeviceGas, SUPERSONIC, 30)
-    assert not device.stepping.tables.by_rows and device.stepping.lanes == 1
+    assert not device.stepping.state.tables.by_rows and device.stepping.state.lanes == 1
     assert apart(processor.save()["conservative"], device.save()["conservative"]) < 1e-13
 
 

@@ -1,0 +1,75 @@
+"""The states of a gas in the memory of a device, and the kernels that compute them."""
+
+from typing import Any
+
+import numpy as np
+
+from quintet.components.meshless_gas.build import Domain
+from quintet.components.meshless_gas.kernels.motion import STAGES
+from quintet.components.meshless_gas.laws.limiters import limiter_of
+from quintet.components.meshless_gas.opencl.device_cloud import DeviceCloud
+from quintet.components.meshless_gas.opencl.programs import gas_program
+from quintet.components.meshless_gas.params import MeshlessGasParams
+from quintet.components.shared.opencl.arrays import GROUP, DeviceArray, run
+from quintet.components.shared.opencl.devices import Device, build
+from quintet.components.shared.opencl.tables import Tables
+from quintet.interfaces.component import Array
+
+LANES_OF_PROCESSORS = 4  # doubles in one of its vectors; other devices make lanes of rows
+
+
+class DeviceState:
+    """States of one gas, and what a step computes of them.
+
+    Parameters
+    ----------
+    params : MeshlessGasParams
+    device : Device
+    threads : int
+        Of the processor, where it is the device.
+    domain : Domain
+    """
+
+    def __init__(
+        self, params: MeshlessGasParams, device: Device, threads: int, domain: Domain
+    ) -> None:
+        self.queue = device.queue(threads)
+        self.tables = Tables(self.queue, device.is_processor)
+        self.lanes = LANES_OF_PROCESSORS if device.is_processor else 1
+        text = gas_program(
+            limiter_of(params.limiter, params.limiter_threshold), params.planar,
+            params.order == 2, params.viscous, self.lanes, self.tables.by_rows,
+        )  # fmt: skip
+        # A kernel is made once: pyopencl makes another at each look.
+        kernels = build(self.queue, text).all_kernels()
+        self._kernels = {kernel.function_name: kernel for kernel in kernels}
+        self.cloud = cloud = DeviceCloud(domain, self.tables)
+        empty, whole, nodes = self.tables.empty, cloud.whole, cloud.nodes
+        self.primitive = empty(whole, 5)  # kg/m3, m/s, Pa
+        self.gradients = empty(whole, 15)
+        self.conservative, self.start, self.residual = (empty(nodes, 5) for _ in range(3))
+        self.lowest, self.sound, self.bounds = (
+            DeviceArray(self.queue, (count,)) for count in (whole, whole, nodes)
+        )
+        self.wrong = DeviceArray(self.queue, (len(STAGES),), np.int32)
+
+    def run(self, name: str, rows: int, *arguments: Any) -> None:
+        """Run a kernel for so many rows; it must pass over those beyond them."""
+        run(self.queue, self._kernels[name], rows, *arguments)
+
+    def put(self, primitive: Array, conservative: Array) -> None:
+        """Copy states (m, 5) of nodes and ghosts and (n, 5) of nodes, none of them wrong."""
+        self.tables.put(self.primitive, primitive)
+        self.tables.put(self.conservative, conservative)
+        self.tables.put(self.residual, np.zeros(self.residual.shape))
+        self.wrong.put(np.full(len(STAGES), -1, np.int32))
+
+    def get(self, primitive: Array, conservative: Array) -> None:
+        """Copy the states into arrays of the host."""
+        primitive[:] = self.tables.get(self.primitive)
+        conservative[:] = self.tables.get(self.conservative)
+
+
+def groups(rows: int) -> int:
+    """How many groups of work items a kernel over so many rows has."""
+    return -(-rows // GROUP)
