@@ -44,24 +44,24 @@ GAS_LAWS = [
     Law(fluxes.sides, (ANY, ANY, PART, TWO)),
     Law(fluxes.pair_rates, (STATE, STATE, STATE, DIRECTION, PART, GAMMA)),
     Law(fluxes.in_laboratory, (CHANGE, ANY, ANY, ANY)),
-    Law(far_field.velocity_change, (LARGE, LARGE, LARGE, GAMMA), ulp=16, cancels=True),
-    Law(far_field.bracket, (*BETWEEN, *BETWEEN, GAMMA), ulp=4),
-    Law(far_field.between, (*BETWEEN, *BETWEEN, GAMMA), ulp=16, cancels=True),
-    Law(far_field.at_rest, (*BETWEEN, LARGE, ANY, GAMMA), ulp=16, cancels=True),
+    Law(far_field.velocity_change, (LARGE, LARGE, LARGE, GAMMA), ulp=6, cancels=True),
+    Law(far_field.bracket, (*BETWEEN, *BETWEEN, GAMMA)),
+    Law(far_field.between, (*BETWEEN, *BETWEEN, GAMMA), ulp=4, cancels=True),
+    Law(far_field.at_rest, (*BETWEEN, LARGE, ANY, GAMMA), ulp=2, cancels=True),
     Law(far_field.with_normal_speed, (STATE, NORMAL, ANY, LARGE, ANY, LARGE)),
-    Law(far_field.meet, (STATE, STATE, NORMAL, GAMMA), ulp=32, cancels=True),
+    Law(far_field.meet, (STATE, STATE, NORMAL, GAMMA), ulp=4, cancels=True),
     *(
         Law(
             boundaries.boundary_state, (kind, STATE, outer, NORMAL, vector(1.0), GAMMA, 1.0),
-            ulp=64, cancels=True, name=name,
+            ulp=10, cancels=True, name=name,
         )
         for name, kind, outer in (
             (" of inflow", INFLOW, GIVEN), (" from rest", INFLOW, AT_REST),
             (" of outflow", OUTFLOW, BEYOND), (" of a wall", SLIP, GIVEN),
         )
     ),
-    Law(boundaries.come_in, WALL, ulp=32, cancels=True),
-    Law(boundaries.from_rest, (STATE, AT_REST, GAMMA, 1.0), ulp=64, cancels=True),
+    Law(boundaries.come_in, WALL, ulp=4, cancels=True),
+    Law(boundaries.from_rest, (STATE, AT_REST, GAMMA, 1.0), ulp=10, cancels=True),
     Law(boundaries.leave, (STATE, NORMAL, LARGE, GAMMA), ulp=2),
     Law(boundaries.slip, (STATE, NORMAL, vector(1.0), GAMMA), ulp=2),
     Law(boundaries.boundary_flow, (STATE, vector(1.0), GAMMA)),
