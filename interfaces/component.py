@@ -136,7 +136,7 @@ class Resources:
         rank 0 returns counts.
     device : str
         Where it computes: "cpu", or "opencl:0" and so on, where its manifest names a component for
-        devices.
+        devices. Of several ranks it may have a number for each: "opencl:0,1".
     """
 
     threads: int = 1

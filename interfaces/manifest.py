@@ -127,6 +127,7 @@ class Manifest:
     ranks: bool = False  # whether a component may own several MPI ranks
     opencl: str = ""  # "module:Class" of a component that computes on OpenCL devices
     opencl_limits: str = ""  # "module:function" of parameters and device: refuses with SceneError
+    opencl_ranks: str = ""  # the same of parameters and ranks, if it can own several on devices
 
     def load(self, device: str = "cpu") -> type[Any]:
         """Import the solver itself, for a device; only the process that runs it does so."""
@@ -141,10 +142,12 @@ class Manifest:
             raise SceneError(f"kind {self.kind}: {path} is not a Component.")
         return cls
 
-    def check_device(self, params: Any, device: str) -> None:
-        """Refuse checked parameters that the component for a device cannot compute."""
+    def check_device(self, params: Any, device: str, ranks: int = 1) -> None:
+        """Refuse checked parameters that the component for a device cannot compute on its ranks."""
         if device != "cpu" and self.opencl_limits:
             resolve(self.opencl_limits)(params, device)
+        if device != "cpu" and ranks > 1 and self.opencl_ranks:
+            resolve(self.opencl_ranks)(params, ranks)
 
     def cases(self) -> tuple[BenchCase, ...]:
         """Benchmarks of this kind, none if it declares none."""

@@ -16,7 +16,7 @@ from quintet.interfaces.manifest import Manifest, find, known_kinds, unknown_kin
 from quintet.interfaces.params import beyond_computing, read, shown
 
 Table = dict[str, Any]
-DEVICE = re.compile(r"opencl(:\d{1,4})?")
+DEVICE = re.compile(r"opencl(:\d{1,4}(,\d{1,4})*)?")
 Pair = tuple[tuple[str, str], tuple[str, str]]  # component and port of the giver, of the taker
 
 
@@ -166,7 +166,7 @@ def _component(
         if wrong:
             mistakes += wrong
             return None
-        manifest.check_device(params, common.device)
+        manifest.check_device(params, common.device, common.ranks)
         with np.errstate(over="raise", divide="raise", invalid="raise"):
             takes, gives = manifest.ports(params)
             plan = manifest.plan(params) if manifest.plan else None
@@ -205,18 +205,25 @@ def _wrong_device(where: str, common: ComponentKeys, manifest: Manifest) -> str:
         return ""
     if not DEVICE.fullmatch(device):
         return (
-            f"{where}.device must be cpu, opencl, or opencl:0 and so on; found {shown(device)}. "
-            "`quintet devices` lists the devices of this machine."
+            f"{where}.device must be cpu, opencl, or opencl:0 and so on, of several ranks also "
+            f"opencl:0,1 and so on; found {shown(device)}. `quintet devices` lists the devices of "
+            "this machine."
         )
     if not manifest.opencl:
         return (
             f"{where}.device must be cpu, for kind {manifest.kind} computes on the processor; "
             f"found {device}. Remove it."
         )
-    if common.ranks > 1:
+    if common.ranks > 1 and not manifest.opencl_ranks:
         return (
-            f"{where}.ranks must be 1 on a device; found {common.ranks} and {device}. Remove one "
-            "of them."
+            f"{where}.ranks must be 1 of kind {manifest.kind} on a device; found {common.ranks} "
+            f"and {device}. Remove one of them."
+        )
+    numbers = device.count(",") + 1
+    if numbers not in (1, common.ranks):
+        return (
+            f"{where}.device must have one number, for all ranks, or one for each rank; found "
+            f"{device} and ranks = {common.ranks}. Change one of them."
         )
     return ""
 

@@ -41,7 +41,8 @@ class ComponentKeys:
         job of their own, and mpi.
     device
         Where it computes: cpu, or opencl:0 and so on, as `quintet devices` lists them; opencl is
-        the first.
+        the first. Of several ranks, opencl:0,1 and so on has a number for each; they share the
+        device of a single number.
     """
 
     kind: str

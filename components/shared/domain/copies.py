@@ -52,8 +52,8 @@ class CopiesAndImages:
         self._communicator = communicator
         self.images = SymmetryImages(planes)
         self.copies = 0  # rows that are copies
-        self._sent: list[Whole] = []  # rows that each rank gets; none before the first `copy`
-        self._received: list[Whole] = []  # rows into which its rows go
+        self.sent: list[Whole] = []  # rows that each rank gets; none before the first `copy`
+        self.received: list[Whole] = []  # rows into which its rows go
         self._halos: dict[tuple[int, ...], Halo] = {}  # by widths
 
     @property
@@ -77,7 +77,7 @@ class CopiesAndImages:
             all_near.append(send_rows(self._communicator, [numbers[part] for part in near]))
             all_sent.append([start + part for part in near])
             start += len(group.keys)
-        self._sent = [np.concatenate(parts) for parts in zip(*all_sent, strict=True)]
+        self.sent = [np.concatenate(parts) for parts in zip(*all_sent, strict=True)]
         received, extended, first, start = [], [], rows, 0
         for group, near_rows in zip(groups, all_near, strict=True):
             copies = np.concatenate(near_rows)
@@ -90,7 +90,7 @@ class CopiesAndImages:
             extended.append(Extended(points.take(order, axis=0), row[order]))
             received.append(_blocks(near_rows, first))
             start, first = start + len(group.keys), first + len(copies)
-        self._received = [np.concatenate(parts) for parts in zip(*received, strict=True)]
+        self.received = [np.concatenate(parts) for parts in zip(*received, strict=True)]
         self._halos, self.copies = {}, first - rows
         return extended
 
@@ -126,7 +126,7 @@ class CopiesAndImages:
         """Bring the copies in arrays (n + copies + images, width) up to date."""
         widths = tuple(array.shape[1] for array in arrays)
         if widths not in self._halos:
-            halo = Halo(self._communicator, self._sent, self._received, widths)
+            halo = Halo(self._communicator, self.sent, self.received, widths)
             self._halos[widths] = halo
         self._halos[widths].exchange(*arrays)
 

@@ -76,8 +76,8 @@ __kernel void greatest(__global const double4 *rows, int count, __global double4
 /* Neighbours among a range of points that the keys of a group begin to count at. */
 static int add_near(
     double4 r, int cx, int cy, int cz, Grid grid, __global const int *start,
-    __global const double4 *position, double reach2, int width, size_t place, size_t stride,
-    int count, __global int *near)
+    __global const double4 *position, __global const int *name, double reach2, int width,
+    size_t place, size_t stride, int count, __global int *near)
 {
     const int low = max(cx - REACH, 0), high = min(cx + REACH, (int)grid.nx - 1);
     for (int kz = max(cz - REACH, 0); kz <= min(cz + REACH, (int)grid.nz - 1); kz++)
@@ -87,7 +87,7 @@ static int add_near(
             for (int j = start[row + low]; j < end; j++) {
                 const double4 d = r - position[j];
                 if (d.x * d.x + d.y * d.y + d.z * d.z < reach2) {
-                    if (count < width) near[place + stride * count] = j;
+                    if (count < width) near[place + stride * count] = name ? name[j] : j;
                     count++;
                 }
             }
@@ -97,18 +97,19 @@ static int add_near(
 
 /* List neighbours within a reach: for the first group of both, for others of the first alone.
 
-   Others look from a point of their own. Rows whose lists are too short count on: the greatest
-   count tells how long they must be. */
+   Rows from `looking` on look from a point of their own, if there are such points. Lists have the
+   names of points, or their rows if these have no names. Rows whose lists are too short count on:
+   the greatest count tells how long they must be. */
 __kernel void search(
-    __global const double4 *position, __global const double *look, int split, int count, Grid grid,
-    __global const int *start_one, __global const int *start_two, double reach2, int width,
-    long row_stride, long item_stride, __global int *near, __global int *middle,
-    __global int *end, __global double4 *extremes)
+    __global const double4 *position, __global const int *name, __global const double *look,
+    int looking, int split, int count, Grid grid, __global const int *start_one,
+    __global const int *start_two, double reach2, int width, long row_stride, long item_stride,
+    __global int *near, __global int *middle, __global int *end, __global double4 *extremes)
 {
     const int i = get_global_id(0);
     if (i >= count) return;
     const double4 r =
-        i >= split && look ? (double4)(vload3(i - split, look), 0) : position[i];
+        look && i >= looking ? (double4)(vload3(i - looking, look), 0) : position[i];
     const double along[3] = {r.x, r.y, r.z};
     const long cell = cell_of(along[grid.first], along[grid.second], along[grid.third], grid);
     int found = 0;
@@ -117,13 +118,13 @@ __kernel void search(
         const int cx = cell % grid.nx, cy = cell / grid.nx % grid.ny, cz = cell / grid.nx / grid.ny;
         const size_t place = (size_t)i * row_stride;
         found = add_near(
-            r, cx, cy, cz, grid, start_one, position, reach2, width, place, item_stride, found,
-            near);
+            r, cx, cy, cz, grid, start_one, position, name, reach2, width, place, item_stride,
+            found, near);
         middle[i] = found;
         if (i < split)
             found = add_near(
-                r, cx, cy, cz, grid, start_two, position, reach2, width, place, item_stride, found,
-                near);
+                r, cx, cy, cz, grid, start_two, position, name, reach2, width, place, item_stride,
+                found, near);
     }
     end[i] = found;
     extremes[i] = (double4)(found, 0, 0, 0);

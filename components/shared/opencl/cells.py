@@ -100,6 +100,7 @@ class Cells:
     def lists(
         self, position: DeviceArray, places: DeviceArray | None, split: int, count: int, grid: Grid,
         starts: tuple[DeviceArray, DeviceArray], reach: float, extremes: DeviceArray,
+        names: DeviceArray | None = None,
     ) -> NearLists:  # fmt: skip
         """List the neighbours within a reach [m] of each row; rows are sorted by cell.
 
@@ -111,17 +112,22 @@ class Cells:
             are rows; these look for the first alone.
         extremes : (n or more, 4) array
             Written; it has a row for each list.
+        names : (any,) int32 array, or None
+            What lists call each row; then all lists are of places, the first `split` of both
+            groups, and the rows of both groups may be others.
         """
-        count = max(count, split + places.shape[0]) if places else count
+        looking = 0 if names else split
+        count = max(count, looking + places.shape[0]) if places else count
         middle, end = (DeviceArray(self.queue, (count,), np.int32) for _ in range(2))
         while True:
             by_rows = (self.width, 1) if self.by_rows else (1, count)
             row_stride, item_stride = map(np.int64, by_rows)
             near = self._room_for(count * self.width)
             run(
-                self.queue, self._search, count, position, places, np.int32(split), np.int32(count),
-                bytes_of(grid, np.float64), *starts, np.float64(reach * reach),
-                np.int32(self.width), row_stride, item_stride, near, middle, end, extremes,
+                self.queue, self._search, count, position, names, places, np.int32(looking),
+                np.int32(split), np.int32(count), bytes_of(grid, np.float64), *starts,
+                np.float64(reach * reach), np.int32(self.width), row_stride, item_stride, near,
+                middle, end, extremes,
             )  # fmt: skip
             longest = int(self.greatest(extremes, count)[0])
             if longest <= self.width:

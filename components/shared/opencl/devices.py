@@ -77,17 +77,19 @@ class Device:
         """Whether it is the processor that this program runs on."""
         return bool(self.handle.type & opencl().device_type.CPU)
 
-    def queue(self, threads: int = 0) -> Any:
+    def queue(self, threads: int = 0, place: int = 0) -> Any:
         """Make a queue of commands, in a context of its own.
 
-        `threads` is how many cores of a processor it may use; 0: all. Other devices are used whole.
+        `threads` is how many cores of a processor it may use; 0: all. The processor is divided into
+        parts of so many cores, of which it takes that of a number, `place`, modulo their number.
+        Other devices are used whole.
         """
         cl, handle = opencl(), self.handle
         if threads and self.is_processor and threads < self.units:
-            (handle,) = handle.create_sub_devices(
-                [cl.device_partition_property.BY_COUNTS, threads,
-                 cl.device_partition_property.BY_COUNTS_LIST_END]
-            )  # fmt: skip
+            parts = self.units // threads
+            partition = cl.device_partition_property
+            counts = [partition.BY_COUNTS, *[threads] * parts, partition.BY_COUNTS_LIST_END]
+            handle = handle.create_sub_devices(counts)[place % parts]
         return cl.CommandQueue(cl.Context([handle]))
 
 

@@ -7,6 +7,9 @@ particle.
 
 Samples of bodies are placed in the host's state and copied to the device. Where there are samples,
 the host's rows of the boundary have the order of the device's.
+
+On several ranks each has a device, or a share of one, with the rows of its part and copies of those
+that are near. Rows are sorted, and brought to other ranks, on the host.
 """
 
 from dataclasses import replace
@@ -14,7 +17,7 @@ from functools import partial
 
 import numpy as np
 
-from quintet.components.shared.opencl.devices import device_of
+from quintet.components.shared.opencl.ranks import device_and_queue
 from quintet.components.shared.search.verlet_list import longest
 from quintet.components.sph_fluid import MANIFEST, diagnostics, judgement
 from quintet.components.sph_fluid.boundary.method import NoFilms
@@ -22,8 +25,9 @@ from quintet.components.sph_fluid.boundary.symmetry_planes import NoSymmetry
 from quintet.components.sph_fluid.component import LOADS, SphFluid
 from quintet.components.sph_fluid.mass_balance.losses import refuse_many_lost
 from quintet.components.sph_fluid.open_boundaries.method import NoOpenBoundaries
+from quintet.components.sph_fluid.opencl.copies import make_copies
 from quintet.components.sph_fluid.opencl.refusal import refuse_what_needs_the_processor
-from quintet.components.sph_fluid.opencl.stepping import Stepping
+from quintet.components.sph_fluid.opencl.stepping import Extremes, Stepping
 from quintet.components.sph_fluid.pairs.interaction import relative_volume
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.ports import SHOWS
@@ -46,7 +50,7 @@ class DeviceFluid(Component):
 
     def __init__(self, params: SphFluidParams, resources: Resources = FIRST_DEVICE) -> None:
         refuse_what_needs_the_processor(params, resources.device)
-        device = device_of(resources.device)
+        device, queue = device_and_queue(resources)
         if not device.has_doubles:
             raise SceneError(
                 f"device {resources.device}: it must compute in double precision, in which the "
@@ -56,9 +60,11 @@ class DeviceFluid(Component):
         self.params, (self.takes, self.gives) = params, self.ports_of(params)
         self.host = SphFluid(params, replace(resources, device="cpu"))
         self.walls_move = self.host.walls_move
+        copies = make_copies(self.host.symmetry, resources.communicator)
+        self.several = copies is not None  # ranks
         self._refuse_other_parts(resources.device)
         parts = (self.host.lists.reach, self.host.frame, self.host.damping)
-        self.stepping = Stepping(params, device, resources.threads, *parts)
+        self.stepping = Stepping(params, queue, device.is_processor, *parts, copies)
         self._speed = 0.0  # m/s, of the fastest fluid, where the scheme looks ahead by it
         self.host.make_film_rows = self.stepping.make_film_rows
         self._put()
@@ -66,10 +72,9 @@ class DeviceFluid(Component):
     def _refuse_other_parts(self, device: str) -> None:
         """Refuse parts that a step on the processor calls, and one on a device does not."""
         host = self.host
-        pairs = (
-            (host.symmetry, NoSymmetry),
-            (host.open_boundaries, NoOpenBoundaries), (host.all_ranks, OneRank),
-        )  # fmt: skip
+        pairs: list[tuple[object, type]] = [(host.open_boundaries, NoOpenBoundaries)]
+        if not self.several:
+            pairs += [(host.symmetry, NoSymmetry), (host.all_ranks, OneRank)]
         other_parts = [
             type(part).__name__ for part, expected in pairs if type(part) is not expected
         ]
@@ -114,6 +119,7 @@ class DeviceFluid(Component):
         """Advance by dt [s]."""
         host = self.host
         host.samples.require_placed()
+        host.all_ranks.begin_step()
         if self.walls_move:
             self._place_pistons(dt)
         if host.lists.need_rebuild(host.state, host.boundary, dt, self._speed):
@@ -127,8 +133,9 @@ class DeviceFluid(Component):
             isolated = not len(host.samples.volume) and self.params.boundary.is_still
             judgement.note(state, self.params, host.totals(), isolated, host.all_ranks)
         extremes = self.stepping.step(state, dt, partial(self._apply_forces, dt))
+        extremes = Extremes(*host.all_ranks.greatest(*extremes))
         self._is_read = False
-        if extremes.failed:
+        if extremes.failures:
             self._get()
             raise diagnostics.failure(state, self.params, dt, host.all_ranks)
         state.moved = extremes.moved
@@ -137,6 +144,7 @@ class DeviceFluid(Component):
         self._speed = self.stepping.damp(state, dt, extremes.speed)
         host.frame.advance(dt)
         host.pistons.advance(state, dt)
+        host.all_ranks.end_step()
 
     def _place_pistons(self, dt: float) -> None:
         """Place pistons at the middle of a step; those that absorb waves read the fluid first."""
@@ -148,48 +156,63 @@ class DeviceFluid(Component):
     def _apply_forces(self, dt: float) -> None:
         """Push the samples as they pushed the fluid; move the fluid with its neighbours (XSPH)."""
         host = self.host
-        if len(host.samples.row):
-            host.state.force = self.stepping.passes.push_samples()
+        if len(host.samples.volume):
+            host.state.force[host.samples.number] = self.stepping.passes.push_samples()
+            host.all_ranks.gather_forces(host.state, host.samples.number)
             host.films.advance(host.state, host.lists.arrays, dt)
         self.stepping.passes.read_power()
         host.frame.count_work(host.state, dt)
         self.stepping.passes.move_with_neighbours(dt)
 
     def _sort(self) -> None:
-        """Bring near rows together and list neighbours: on the host where fluid left the tank."""
+        """Bring near rows together and list neighbours.
+
+        It is done on the host where there are several ranks, and where fluid left the tank.
+        """
+        if self.several:
+            self._sort_on_host()
+            return
         rows, state = self.stepping.rows, self.host.state
         low, high, densest, is_outside = rows.survey()
-        if densest > self.params.density * (1.0 + TAIT * diagnostics.MACH) ** (1.0 / TAIT):
-            self._get()
-            diagnostics.refuse_dense(state, self.params, self.host.all_ranks)
-        if is_outside:
-            self._get()
-            self.host.lists.sort(state)
-            refuse_many_lost(state, self.params)
-            self._put()
+        densest_allowed = self.params.density * (1.0 + TAIT * diagnostics.MACH) ** (1.0 / TAIT)
+        if is_outside or densest > densest_allowed:
+            self._sort_on_host()
         else:
             rows.sort(low, high, state)
             self.stepping.passes.centre(low, high)
             self._is_read = False
             self._follow_lists()
 
+    def _sort_on_host(self) -> None:
+        """Sort on the host, which drops fluid that left the tank and brings rows to their ranks."""
+        self._get()
+        state = self.host.state
+        diagnostics.refuse_dense(state, self.params, self.host.all_ranks)
+        self.host.lists.sort(state)
+        refuse_many_lost(state, self.params)
+        self._put()
+
     def _follow_lists(self) -> None:
         """Let the host and the passes over pairs follow new lists."""
         host, rows, self._is_listed = self.host, self.stepping.rows, False
         host.samples.find_rows(host.state)
-        self.stepping.passes.follow(relative_volume(host.samples, host.state, self.params))
+        volume = relative_volume(host.samples, host.state, self.params)
+        if len(volume):
+            host.symmetry.write_values(volume, host.state.particles)
+        self.stepping.passes.follow(volume)
         if not isinstance(host.films, NoFilms) and len(host.state.reference):
             host.samples.listed = rows.listed(host.samples.row)
             host.films.resize(host.state, rows.lengths())
 
     def _put(self) -> None:
         """Copy the host's state to the device."""
-        state = self.host.state
-        self.stepping.rows.put(state)
+        host, rows, state = self.host, self.stepping.rows, self.host.state
+        rows.put(state, rows.copies.around(state, rows.reach, host.boundary))
         self.stepping.passes.resize()
         if len(state.reference):
             points = state.reference[: state.fluid]
-            self.stepping.passes.centre(points.min(axis=0), points.max(axis=0))
+            corners = host.all_ranks.greatest(*-points.min(axis=0), *points.max(axis=0))
+            self.stepping.passes.centre(-np.array(corners[:3]), np.array(corners[3:]))
         self._is_read, self._speed = True, longest(state.velocity_pressure[: state.fluid])
         self._follow_lists()
 

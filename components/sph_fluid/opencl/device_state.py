@@ -1,6 +1,6 @@
 """The state of a fluid in the memory of a device, sorted by cell there."""
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -8,8 +8,12 @@ from quintet.components.shared.opencl.arrays import DeviceArray, run
 from quintet.components.shared.opencl.cells import Cells, NearLists
 from quintet.components.shared.search.cells import Grid, grid_between
 from quintet.components.shared.search.neighbours import Lists
+from quintet.components.sph_fluid.opencl.copies import Copies
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.state import State, Whole
+
+if TYPE_CHECKING:  # loads mpi4py
+    from quintet.components.sph_fluid.ranks.halo import Around
 
 # Arrays of `State` that are on the device, by the rows that they have.
 OF_ALL = ("position_density", "velocity_pressure", "previous_density_rate", "minus_rho_div_u")
@@ -30,11 +34,15 @@ class DeviceState:
         Of the neighbour lists.
     by_rows : bool
         As of `Cells`.
+    copies : Copies
+        Of other ranks' rows, behind all others in `position` and `velocity`.
     """
 
     def __init__(
-        self, queue: Any, kernels: Any, params: SphFluidParams, reach: float, by_rows: bool
-    ) -> None:
+        self, queue: Any, kernels: Any, params: SphFluidParams, reach: float, by_rows: bool,
+        copies: Copies,
+    ) -> None:  # fmt: skip
+        self.copies = copies
         self.queue, self.reach, self.mirrored = queue, reach, params.mirrored
         self.cells = Cells(queue, kernels, by_rows)
         self._survey, self._gather = kernels.survey, kernels.gather
@@ -59,23 +67,46 @@ class DeviceState:
         """Mirror points (boundary, 3) of mirrored walls and samples."""
         return self.arrays["mirror_point"] if self.mirrored else None
 
-    def put(self, state: State) -> None:
-        """Copy a state to the device; lists that it has are made again."""
-        self.split, self.count, self.samples = state.fluid, state.particles, len(state.force)
+    def put(self, state: State, around: "Around | None" = None) -> None:
+        """Copy a state to the device; lists that it has are made again.
+
+        `around` is what may be near, where that is more than the rows of the state.
+        """
+        row = state.sample_rows()
+        self.split, self.count, self.samples = state.fluid, state.particles, len(row)
         names = (*OF_ALL, *OF_FLUID, *OF_BOUNDARY)
         self.arrays = {name: DeviceArray.of(self.queue, getattr(state, name)) for name in names}
-        self._spare = {
-            name: DeviceArray(self.queue, array.shape, array.dtype)
-            for name, array in self.arrays.items()
-        }
+        self._spare = {}
+        if not self.copies.are_there:  # rows of several ranks are sorted on the host
+            self._spare = {
+                name: DeviceArray(self.queue, array.shape, array.dtype)
+                for name, array in self.arrays.items()
+            }
+        self._put_numbers(state, row)
         self.reference = DeviceArray(self.queue, (self.count + len(state.mirror_point), 3))
         self.extremes = DeviceArray(self.queue, (self.count + self.samples, 4))
         self._most, self._least = (DeviceArray(self.queue, (self.split, 4)) for _ in range(2))
-        self.row = DeviceArray.of(self.queue, state.sample_rows().astype(np.int32))
+        self.row = DeviceArray.of(self.queue, row.astype(np.int32))
         self._placed = DeviceArray(self.queue, (self.samples, 9))
         if len(state.reference):
             self.reference.put(state.reference)
-            self._list_as_noted(state)
+            if around is None:
+                self._list_as_noted(state)
+            else:
+                self._list_around(around)
+
+    def _put_numbers(self, state: State, row: Whole) -> None:
+        """Number the samples of this rank, which have rows (k,), if others have samples too."""
+        self._own_numbers: DeviceArray | None = None
+        if self.copies.are_there:
+            numbers = np.full(len(state.sample), -1)
+            numbers[row - self.split] = np.arange(len(row))
+            self._own_numbers = DeviceArray.of(self.queue, numbers)
+
+    @property
+    def numbers(self) -> DeviceArray:
+        """Numbers (boundary,) of the samples among those of this rank; -1 for walls."""
+        return self._own_numbers or self.arrays["sample"]
 
     def get(self, state: State) -> None:
         """Copy the rows into a host's state."""
@@ -100,7 +131,7 @@ class DeviceState:
         """Make room for accelerations (fluid, 3) m/s2; False where they are there."""
         if self.arrays["acceleration"].shape[0]:
             return False
-        for arrays in (self.arrays, self._spare):
+        for arrays in (self.arrays, *([self._spare] if self._spare else [])):
             arrays["acceleration"] = DeviceArray(self.queue, (self.split, 3))
         return True
 
@@ -205,6 +236,24 @@ class DeviceState:
         self.lists: NearLists = self.cells.lists(
             position, query_points, split, self.count, grid, starts, self.reach, self.extremes
         )
+
+    def _list_around(self, around: "Around") -> None:
+        """List neighbours among this rank's rows and copies, where they are as they are listed."""
+        names = np.concatenate([around.fluid, around.boundary])
+        split, boundary_count = len(around.fluid), len(around.boundary)
+        rows = np.zeros((len(names), 4))
+        rows[:, :3] = around.points.take(names, axis=0)
+        position, grid = DeviceArray.of(self.queue, rows), around.grid
+        groups = ((0, split), (split, boundary_count))
+        first, second = (
+            self.cells.starts(self.cells.sorted_keys(position, *group, grid), *group, grid)
+            for group in groups
+        )
+        self.lists = self.cells.lists(
+            position, DeviceArray.of(self.queue, around.looking), self.split, 0, grid,
+            (first, second), self.reach, self.extremes,
+            DeviceArray.of(self.queue, names.astype(np.int32)),
+        )  # fmt: skip
 
     @property
     def first_listed(self) -> int:

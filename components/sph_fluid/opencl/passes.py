@@ -79,18 +79,19 @@ class Passes:
 
     def resize(self) -> None:
         """Make room for a state that was copied to the device."""
-        shape = (self.rows.count, 4)
+        copies = self.rows.copies.count
+        shape, with_copies = (self.rows.count, 4), (self.rows.count + copies, 4)
         self.rate = DeviceArray(self.queue, shape, self._real)
         self.force = DeviceArray(self.queue, (self.rows.samples, 4))
         if self._has_apparent:
             # Lanes behind the end of a list read rows of the fluid: they must be finite.
-            self._apparent = DeviceArray.of(self.queue, np.zeros(shape, self._real))
+            self._apparent = DeviceArray.of(self.queue, np.zeros(with_copies, self._real))
         if self._moving_frame:
             self._moving_frame.resize()
         if self._drifts:
             self._drift = DeviceArray(self.queue, (self.rows.split, 3))
         if self.precision == "single":
-            self._copies = [DeviceArray(self.queue, shape, self._real) for _ in range(2)]
+            self._narrowed = [DeviceArray(self.queue, with_copies, self._real) for _ in range(2)]
 
     def follow(self, volume: Array) -> None:
         """Follow new lists, with volumes (n,) of all rows, (0,) if all are alike.
@@ -117,6 +118,7 @@ class Passes:
         """
         self.frame.set_time(later)
         self._write_boundary()
+        self.rows.copies.exchange(self.rows.position, self.rows.velocity)
         rows, lists, law = self.rows, self.rows.lists, self.frame.law(self._law)
         structs = self._structs if law is self._law else self._structs_of(law)
         self._particles = self._in_precision()
@@ -135,12 +137,13 @@ class Passes:
         strides = (lists.row_stride, lists.item_stride)
         split, count = np.int32(rows.split), np.int32(rows.count)
         if self.params.mirrored:
+            rows.copies.exchange(rows.position, rows.velocity)
             gravity = math.hypot(*self.frame.rest_acceleration)
             rest_gradient = self.params.density * gravity / self.params.sound_speed**2
             run(
                 self.queue, self._extrapolate, rows.count - rows.split, split, count, rows.mirror,
-                rows.arrays["sample"], rows.position, rows.velocity, lists.near, lists.end,
-                *strides, np.float64(rest_gradient), self._constants,
+                rows.numbers, rows.position, rows.velocity, lists.near, lists.end, *strides,
+                np.float64(rest_gradient), self._constants,
             )  # fmt: skip
         if self._damper:
             self._damper.write_pressure(self.moving)
@@ -150,6 +153,8 @@ class Passes:
                 rows.mirror, rows.position, rows.velocity, lists.near, lists.end, *strides,
                 self._constants, self._apparent,
             )  # fmt: skip
+            assert self._apparent is not None
+            rows.copies.exchange(self._apparent)
 
     def push_samples(self) -> Array:
         """Forces (samples, 3) N on samples: minus those of the last pass on the fluid."""
@@ -180,12 +185,13 @@ class Passes:
         rows = self.rows
         if self.precision == "double":
             return rows.position, rows.velocity
-        position, velocity = self._copies
-        for source, origin, copy in (
+        position, velocity = self._narrowed
+        count = rows.count + rows.copies.count
+        for source, origin, narrowed in (
             (rows.position, self._origin, position),
             (rows.velocity, np.zeros(4), velocity),
         ):
-            run(self.queue, self._narrow, rows.count, source, np.int32(rows.count), origin, copy)
+            run(self.queue, self._narrow, count, source, np.int32(count), origin, narrowed)
         return position, velocity
 
 

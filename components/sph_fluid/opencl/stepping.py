@@ -6,10 +6,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from quintet.components.shared.opencl.devices import Device, build
+from quintet.components.shared.opencl.devices import build
 from quintet.components.shared.opencl.prelude import Precision
 from quintet.components.sph_fluid.constants import pair_law
 from quintet.components.sph_fluid.motion.frame import Frame
+from quintet.components.sph_fluid.opencl.copies import MakeCopies, NoCopies
 from quintet.components.sph_fluid.opencl.device_state import DeviceState
 from quintet.components.sph_fluid.opencl.passes import Passes
 from quintet.components.sph_fluid.opencl.programs import rows_program
@@ -35,7 +36,7 @@ class Extremes(NamedTuple):
     approach: float  # 1/s, largest
     moved: float  # m, furthest from where the lists were made
     speed: float  # m/s, with position Verlet; else 0
-    failed: bool
+    failures: float  # 1 if a particle's step failed; else 0
 
 
 class Stepping:
@@ -44,32 +45,38 @@ class Stepping:
     Parameters
     ----------
     params : SphFluidParams
-    device : Device
-    threads : int
-        Of the processor, where it is the device.
+    queue : pyopencl.CommandQueue
+    is_processor : bool
+        Whether its device is a processor.
     reach : float, m
         Of the neighbour lists.
     frame : Frame
         In which the fluid is computed.
     damping : Damping
+    make_copies : MakeCopies, or None
+        Makes copies of other ranks' rows, of a fluid on several.
     """
 
     def __init__(
         self,
         params: SphFluidParams,
-        device: Device,
-        threads: int,
+        queue: Any,
+        is_processor: bool,
         reach: float,
         frame: Frame,
         damping: Damping,
+        make_copies: MakeCopies | None,
     ) -> None:
-        self.params, self.queue = params, device.queue(threads)
+        self.params, self.queue = params, queue
         precision: Precision = "double" if params.precision == "float64" else "single"
-        law, lanes = pair_law(params), LANES_OF_PROCESSORS if device.is_processor else 1
+        law, lanes = pair_law(params), LANES_OF_PROCESSORS if is_processor else 1
         damps = not isinstance(damping, NoDamping)
-        kernels = build(self.queue, rows_program(law, precision, lanes, frame.forces, damps))
+        several = make_copies is not None
+        text = rows_program(law, precision, lanes, frame.forces, damps, several)
+        kernels = build(self.queue, text)
         self._of_films = kernels.film_sides, kernels.fluid_share
-        self.rows = DeviceState(self.queue, kernels, params, reach, device.is_processor)
+        copies = make_copies(self.queue, kernels) if make_copies else NoCopies()
+        self.rows = DeviceState(self.queue, kernels, params, reach, is_processor, copies)
         self.passes = Passes(params, lanes, kernels, self.rows, precision, frame)
         self._scheme = scheme(params, kernels, self.rows, self.passes)
         self.damping = damping_zones(damping, kernels, self.rows)
@@ -84,7 +91,7 @@ class Stepping:
         self._scheme.step(dt, state.last_dt, apply_forces)
         square, approach, shift2, speed2 = rows.cells.greatest(rows.extremes, rows.split)
         acceleration, moved, speed = map(math.sqrt, (square, shift2, speed2))
-        return Extremes(acceleration, float(approach), moved, speed, bool(np.isinf(speed2)))
+        return Extremes(acceleration, float(approach), moved, speed, float(np.isinf(speed2)))
 
     def damp(self, state: State, dt: float, speed: float) -> float:
         """Damp the fluid in zones at the end of a step; return its greatest speed [m/s] then."""

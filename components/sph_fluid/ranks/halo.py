@@ -1,18 +1,29 @@
 """Copies of the fluid and the boundary of other ranks, and images in planes of symmetry."""
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from quintet.components.shared.domain.copies import CopiesAndImages, Group
 from quintet.components.shared.domain.sorting import grid_of_all
+from quintet.components.shared.search.cells import Grid
 from quintet.components.shared.search.neighbours import NeighbourLists, neighbours_among
 from quintet.components.shared.symmetry import Plane
 from quintet.components.shared.threads import Team
 from quintet.components.sph_fluid.ranks.several import Keys
-from quintet.components.sph_fluid.state import Array, State
+from quintet.components.sph_fluid.state import Array, State, Whole
 from quintet.interfaces.component import Fields
+
+
+class Around(NamedTuple):
+    """All that the rows of a rank may have as neighbours, where it was listed."""
+
+    points: Array  # (n + copies + images, 3) m, by row
+    fluid: Whole  # (k,) rows of the fluid, in the order in which one rank would have them
+    boundary: Whole  # (m,) the same of the boundary
+    looking: Array  # (q, 3) m, points that look: the rank's own fluid, then others
+    grid: Grid
 
 
 class HaloAndImages:
@@ -34,11 +45,22 @@ class HaloAndImages:
         self.all_images = self._images.all_images
         self.write_vectors = self._rows.write_vectors
 
+    @property
+    def rows(self) -> tuple[list[Whole], list[Whole]]:
+        """For each rank the rows that it gets, and the rows into which its rows go."""
+        return self._rows.sent, self._rows.received
+
     def neighbours(
         self, state: State, reach: float, team: Team, query_points: Array | None,
         buffer: NDArray[np.int32],
     ) -> NeighbourLists:  # fmt: skip
         """Make room for copies and images, and lists of the fluid, then of the boundary."""
+        points, first, second, looking, grid = self.around(state, reach, query_points)
+        arguments = (looking, state.fluid, team, buffer, grid)
+        return neighbours_among(reach, points, first, second, *arguments)
+
+    def around(self, state: State, reach: float, query_points: Array | None) -> Around:
+        """Make room for copies and images, and find all that rows may have as neighbours."""
         rows, split = state.particles, state.fluid
         fluid, boundary = state.reference[:split], state.reference[split:rows]
         others = boundary if query_points is None else query_points
@@ -53,7 +75,7 @@ class HaloAndImages:
         state.velocity_pressure = self._rows.with_room(state.velocity_pressure, rows)
         self.write_images(state)
         grid = grid_of_all(self._communicator, points.take(first, axis=0), reach)
-        return neighbours_among(reach, points, first, second, looking, split, team, buffer, grid)
+        return Around(points, first, second, looking, grid)
 
     def write_images(self, state: State) -> None:
         """Write copies and images of all particles as they are."""

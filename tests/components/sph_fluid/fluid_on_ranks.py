@@ -121,18 +121,23 @@ PARAMS = {
         "sound_speed": 60.0,
     },
 }
+BODIES = {"body": (0.9, 0.2, 0.3)}  # m, where the box begins
 
 
 class Run(SolverRun):
     """A case of a fluid; in one of them a box of samples is pushed through it."""
 
+    def make(self, params, threads):
+        """Return the fluid of some parameters."""
+        return SphFluid(params, Resources(threads, communicator=COMMUNICATOR))
+
     def build(self):
         params = fluid_params(spacing=SPACING, **({"sound_speed": 40.0} | PARAMS[self.name]))
         threads = 2 if self.name == "dam" and WORLD.size > 1 else 1
-        fluid = SphFluid(params, Resources(threads, communicator=COMMUNICATOR))
+        fluid = self.make(params, threads)
         if self.name == "pushed":
             fluid.bind({}, frozenset())
-        if self.name == "body":
+        if self.name in BODIES:
             self.arm, normal, volume = fill(BOX, SIZE, SPACING, 0.5 * SPACING)
             self.mirror = mirrors(BOX, SIZE, self.arm, normal)
             static = {"surface.normal": normal, "surface.volume": volume}
@@ -142,10 +147,11 @@ class Run(SolverRun):
         return fluid
 
     def inputs(self):
-        if self.name != "body":
+        if self.name not in BODIES:
             return {}
         t = self.time
-        place = np.array([0.9 - 0.5 * t, 0.2, 0.3 + 0.05 * np.sin(9.0 * t)])
+        x, y, z = BODIES[self.name]
+        place = np.array([x - 0.5 * t, y, z + 0.05 * np.sin(9.0 * t)])
         velocity = np.array([-0.5, 0.0, 0.45 * np.cos(9.0 * t)])
         return {
             "surface.position": place + self.arm,

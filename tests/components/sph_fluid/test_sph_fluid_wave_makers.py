@@ -7,6 +7,7 @@ import pytest
 from fluid_params import fluid_params
 from pydantic import ValidationError
 
+from quintet.components.sph_fluid import MANIFEST
 from quintet.components.sph_fluid.component import SphFluid
 from quintet.components.sph_fluid.ranks.refusal import refuse_what_needs_one_rank
 from quintet.components.sph_fluid.setup.wave_theory import transfer
@@ -178,7 +179,10 @@ def test_an_absorbing_piston_gives_way_to_water_that_is_too_high():
 
 def test_absorption_is_refused_on_several_ranks():
     params = fluid_params(**settings(REGULAR | {"absorption": True}))
-    with pytest.raises(SceneError, match=r"waves\.absorption must be false of a fluid on 2 ranks"):
+    sentence = r"waves\.absorption must be false of a fluid on 2 ranks"
+    with pytest.raises(SceneError, match=sentence):
+        MANIFEST.check_device(params, "opencl", 2)
+    with pytest.raises(SceneError, match=sentence):
         refuse_what_needs_one_rank(params, 2)
 
 

@@ -11,6 +11,7 @@ import pytest
 from quintet.components.shared.opencl import __main__ as listing
 from quintet.components.shared.opencl.devices import NO_DEVICE, bandwidth, device_of, is_any_there
 from quintet.coupler.launch.acceptance import settings
+from quintet.coupler.scene import component_tables
 from quintet.coupler.scene.read import load
 from quintet.interfaces import libraries
 from quintet.interfaces.errors import OrderError, SceneError, StepError
@@ -36,7 +37,16 @@ WRONG = [
     ("still_water", "water", "gpu", {}, r"water\.device must be cpu, opencl, or opencl:0.*'gpu'"),
     ("still_water", "water", "opencl:x", {}, r"found 'opencl:x'.*`quintet devices` lists"),
     ("sphere_rebound", "spheres", "opencl", {}, r"device must be cpu, for kind dem_bodies.*Remove"),
-    ("still_water", "water", "opencl", {"ranks": 2}, r"ranks must be 1 on a device; found 2 and"),
+    (
+        "still_water",
+        "water",
+        "opencl:0,1",
+        {},
+        r"must have one number, for all ranks, or one for.*"
+        r"found opencl:0,1 and ranks = 1",
+    ),
+    ("still_water", "water", "opencl:0,1", {"ranks": 3}, r"found opencl:0,1 and ranks = 3"),
+    ("still_water", "water", "opencl:0,", {"ranks": 2}, r"of several ranks also opencl:0,1"),
 ]
 
 
@@ -44,6 +54,22 @@ WRONG = [
 def test_a_device_that_a_component_cannot_use_is_refused(name, component, device, keys, words):
     with pytest.raises(SceneError, match=words):
         scene(name, component, device, **keys)
+
+
+def test_a_kind_that_computes_on_one_device_refuses_several_ranks(monkeypatch):
+    one_device = replace(find("sph_fluid"), opencl_ranks="")
+    monkeypatch.setattr(component_tables, "find", lambda kind: one_device)
+    match = r"ranks must be 1 of kind sph_fluid on a device; found 2 and opencl. Remove one"
+    with pytest.raises(SceneError, match=match):
+        scene("still_water", "water", "opencl", ranks=2)
+
+
+def test_ranks_share_a_device_or_have_one_each():
+    for device in ("opencl", "opencl:1", "opencl:0,1"):
+        keys = {"ranks": 2, "device": device}
+        settings = [f"components.water.{key}={value!r}" for key, value in keys.items()]
+        plan = load("still_water", settings=[*settings, "transport='mpi'"]).components["water"]
+        assert (plan.ranks, plan.device) == (2, device)
 
 
 def test_a_kind_without_devices_refuses_them_as_it_is_loaded():

@@ -1,0 +1,36 @@
+"""Program that test_sph_fluid_opencl_ranks.py runs: fluids of fluid_on_ranks.py on devices.
+
+Each rank names a device, all of them the first. Planes of symmetry are replaced by walls.
+"""
+
+import fluid_on_ranks
+from fluid_on_ranks import BODIES, PARAMS
+from solver_run import COMMUNICATOR, WORLD
+
+from quintet.components.sph_fluid.opencl.device_fluid import DeviceFluid
+from quintet.interfaces.component import Resources
+
+WALLED = {"boundary__symmetry": []}
+PARAMS |= {
+    "damped": PARAMS["symmetric"] | WALLED,
+    "rounded": PARAMS["single"] | WALLED,
+    "shaken": PARAMS["swaying"] | WALLED,
+    "uneven": PARAMS["block"] | {"fluid": [((0.0, 0.0, 0.0), (0.57, 0.4, 0.37))]},
+    "filmed": PARAMS["body"]
+    | {"boundary__lubrication_films": "auto", "remove_inside_bodies": True},
+}
+BODIES["filmed"] = (0.9, 0.2, 0.11)  # m
+
+
+class Run(fluid_on_ranks.Run):
+    """A case of a fluid on devices; in two of them a box is pushed through it."""
+
+    def make(self, params, threads):
+        """Return the fluid of some parameters."""
+        device = "opencl:" + ",".join("0" * WORLD.size)
+        return DeviceFluid(params, Resources(1, communicator=COMMUNICATOR, device=device))
+
+    def failure(self):
+        """Message of a step that is too large, by the state that the host then has."""
+        self.solver.state = self.solver.host.state
+        return super().failure()
