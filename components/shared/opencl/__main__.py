@@ -14,6 +14,11 @@ from quintet.components.shared.opencl.devices import (
 )
 from quintet.interfaces.errors import QuintetError, SceneError
 
+HOW = (
+    'A component computes on one with device = "opencl:0"; with ranks = 2 both ranks share it, or '
+    'each has one of its own: "opencl:0,1".'
+)
+
 
 def main(arguments: Sequence[str] = ()) -> int:
     """Print the devices; status 2 where there are none that work."""
@@ -40,6 +45,8 @@ def main(arguments: Sequence[str] = ()) -> int:
             f"    {row['units']} compute units, {row['memory'] / 2**30:.1f} GiB, {doubles}, "
             f"copies {row['bandwidth'] / 1e9:.1f} GB/s"
         )
+    if rows:
+        print(HOW)
     return 0 if rows else 2
 
 

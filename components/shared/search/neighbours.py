@@ -131,6 +131,16 @@ def search(
     return True
 
 
+class Around(NamedTuple):
+    """Rows that others may have as neighbours, as of `neighbours_among`; with copies and images."""
+
+    points: Points  # (n, 3) m
+    first: Whole  # (k,) rows of the first group
+    second: Whole  # (m,) rows of the second
+    looking: Points  # (q, 3) m, points that look: the first group's own, then others
+    grid: Grid
+
+
 def neighbours_within(
     reach: float,
     points: Points,

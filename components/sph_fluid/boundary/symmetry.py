@@ -7,8 +7,9 @@ of walls and samples are these: what is left of a symmetric whole moves as that 
 import numpy as np
 from numpy.typing import NDArray
 
-from quintet.components.shared.search.neighbours import NeighbourLists
-from quintet.components.shared.symmetry import Plane, SymmetryImages, neighbours_and_images
+from quintet.components.shared.search.cells import grid_around
+from quintet.components.shared.search.neighbours import Around, NeighbourLists, neighbours_among
+from quintet.components.shared.symmetry import Plane, SymmetryImages
 from quintet.components.shared.threads import Team
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.state import Array, State
@@ -30,17 +31,24 @@ class Symmetry:
         self, state: State, reach: float, team: Team, query_points: Array | None,
         buffer: NDArray[np.int32],
     ) -> NeighbourLists:  # fmt: skip
-        """Make buffer for images, and lists of the fluid, then of the boundary or query points."""
-        rows = state.particles
+        """Make room for images, and lists of the fluid, then of the boundary or query points."""
+        points, first, second, looking, grid = self.around(state, reach, query_points)
+        arguments = (looking, state.fluid, team, buffer, grid)
+        return neighbours_among(reach, points, first, second, *arguments)
+
+    def around(self, state: State, reach: float, query_points: Array | None) -> Around:
+        """Make room for images, and find all that rows may have as neighbours."""
+        rows, split = state.particles, state.fluid
         points = self.images.find(state.reference[:rows], reach)
-        is_fluid = np.arange(len(points)) < state.fluid
+        is_fluid = np.arange(len(points)) < split
         self.images.write_values(is_fluid, rows)
         state.position_density = self.images.with_room(state.position_density, rows)
         state.velocity_pressure = self.images.with_room(state.velocity_pressure, rows)
         self.write_images(state)
-        return neighbours_and_images(
-            points, is_fluid, state.fluid, rows, reach, team, query_points, buffer
-        )
+        first, second = np.flatnonzero(is_fluid), np.flatnonzero(~is_fluid)
+        others = points[split:rows] if query_points is None else query_points
+        looking = np.concatenate([points[:split], others])
+        return Around(points, first, second, looking, grid_around(points.take(first, 0), reach))
 
     def write_images(self, state: State) -> None:
         """Write the images of all particles as they are."""

@@ -1,36 +1,40 @@
-"""What a fluid on a device asks of copies of other ranks' rows; a fluid on one rank has none."""
+"""What stands behind the rows of a fluid on a device: copies of other ranks' rows, and images."""
 
 from collections.abc import Callable
 from functools import partial
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import Any, NamedTuple, Protocol
 
 from quintet.components.shared.opencl.arrays import DeviceArray
+from quintet.components.shared.search.neighbours import Around
 from quintet.components.sph_fluid.boundary.method import BoundaryMethod
-from quintet.components.sph_fluid.boundary.symmetry_planes import SymmetryPlanes
+from quintet.components.sph_fluid.boundary.symmetry_planes import NoSymmetry, SymmetryPlanes
 from quintet.components.sph_fluid.state import State
-
-if TYPE_CHECKING:  # loads mpi4py
-    from quintet.components.sph_fluid.ranks.halo import Around
 
 
 class Copies(Protocol):
-    """Rows behind a rank's own."""
+    """Rows behind those that a rank owns."""
 
-    are_there: bool  # whether there may be any: of several ranks
+    are_there: bool  # whether there may be any; then rows are sorted on the host, which finds them
 
     @property
     def count(self) -> int:
         """How many there are."""
 
-    def around(self, state: State, reach: float, boundary: BoundaryMethod) -> "Around | None":
-        """Make room for copies in a state with lists, and find what may be near; None: all own."""
+    def around(self, state: State, reach: float, boundary: BoundaryMethod) -> Around | None:
+        """Make room for them in a state with lists, and find what may be near; None: all own."""
 
-    def exchange(self, *arrays: DeviceArray) -> None:
-        """Bring the copies in arrays (rows + copies, ...) up to date."""
+    def write(self, position: DeviceArray, velocity: DeviceArray) -> None:
+        """Bring those of positions and velocities (n + count, 4) up to date."""
+
+    def write_apparent(self, apparent: DeviceArray) -> None:
+        """Bring those of velocities that viscosity sees (n + count, 4) up to date."""
+
+    def reflect_crossed(self, split: int, *arrays: DeviceArray | None) -> None:
+        """Bring back fluid that passed a plane: positions, velocities, accelerations or None."""
 
 
 class NoCopies:
-    """Those of one rank."""
+    """Those of one rank without planes of symmetry."""
 
     are_there = False
 
@@ -42,23 +46,43 @@ class NoCopies:
     def around(self, state: State, reach: float, boundary: BoundaryMethod) -> None:
         """Nothing to find: a rank's own rows are all."""
 
-    def exchange(self, *arrays: DeviceArray) -> None:
+    def write(self, position: DeviceArray, velocity: DeviceArray) -> None:
+        """Nothing to do."""
+
+    def write_apparent(self, apparent: DeviceArray) -> None:
+        """Nothing to do."""
+
+    def reflect_crossed(self, split: int, *arrays: DeviceArray | None) -> None:
         """Nothing to do."""
 
 
-MakeCopies = Callable[[Any, Any], Copies]  # of a queue and the kernels of its device
+class CopiesOnDevice(NamedTuple):
+    """Kernels that a fluid's copies need, and what makes them of a queue and built kernels."""
+
+    source: str
+    make: Callable[[Any, Any], Copies]
 
 
-def make_copies(symmetry: SymmetryPlanes, communicator: Any) -> MakeCopies | None:
-    """Return what makes copies behind the rows of a fluid on several ranks; None on one.
+NONE = CopiesOnDevice("", lambda queue, kernels: NoCopies())
 
-    `symmetry` is the host's, which finds copies where there are several ranks.
-    """
+
+def copies_on_device(symmetry: SymmetryPlanes, communicator: Any) -> CopiesOnDevice:
+    """Return what makes copies and images; `symmetry` is the host's, which finds them."""
+    if isinstance(symmetry, NoSymmetry):
+        return NONE
+    # Left out of fluids on one rank without planes of symmetry.
+    from quintet.components.sph_fluid.boundary.symmetry import Symmetry
+    from quintet.components.sph_fluid.opencl import images
+
+    source = images.SOURCE.read_text()
     if communicator is None or communicator.size == 1:
-        return None
+        assert isinstance(symmetry, Symmetry)  # other images are refused
+        return CopiesOnDevice(source, partial(images.ImagesOfOneRank, symmetry))
     # Only a fluid of several ranks loads mpi4py.
+    from quintet.components.shared.opencl import halo
     from quintet.components.sph_fluid.opencl.ranks import DeviceCopies
     from quintet.components.sph_fluid.ranks.halo import HaloAndImages
 
     assert isinstance(symmetry, HaloAndImages)
-    return partial(DeviceCopies, communicator, symmetry)
+    make = partial(DeviceCopies, communicator, symmetry)
+    return CopiesOnDevice(source + halo.source(), make)

@@ -28,7 +28,7 @@ class DeviceDamper:
             rows.arrays["minus_rho_div_u"], rows.position, rows.velocity, self._constants,
         )  # fmt: skip
         if rows.mirrored:
-            rows.copies.exchange(rows.position, rows.velocity)
+            rows.copies.write(rows.position, rows.velocity)
             numbers = map(np.int32, (rows.split, rows.count))
             run(
                 rows.queue, self._mirror, rows.count - rows.split, *numbers, rows.mirror,

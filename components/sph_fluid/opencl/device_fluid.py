@@ -9,7 +9,7 @@ Samples of bodies are placed in the host's state and copied to the device. Where
 the host's rows of the boundary have the order of the device's.
 
 On several ranks each has a device, or a share of one, with the rows of its part and copies of those
-that are near. Rows are sorted, and brought to other ranks, on the host.
+that are near. Then, and with planes of symmetry, rows are sorted on the host.
 """
 
 from dataclasses import replace
@@ -21,22 +21,23 @@ from quintet.components.shared.opencl.ranks import device_and_queue
 from quintet.components.shared.search.verlet_list import longest
 from quintet.components.sph_fluid import MANIFEST, diagnostics, judgement
 from quintet.components.sph_fluid.boundary.method import NoFilms
-from quintet.components.sph_fluid.boundary.symmetry_planes import NoSymmetry
 from quintet.components.sph_fluid.component import LOADS, SphFluid
 from quintet.components.sph_fluid.mass_balance.losses import refuse_many_lost
-from quintet.components.sph_fluid.open_boundaries.method import NoOpenBoundaries
-from quintet.components.sph_fluid.opencl.copies import make_copies
+from quintet.components.sph_fluid.opencl.copies import copies_on_device
 from quintet.components.sph_fluid.opencl.refusal import refuse_what_needs_the_processor
 from quintet.components.sph_fluid.opencl.stepping import Extremes, Stepping
 from quintet.components.sph_fluid.pairs.interaction import relative_volume
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.ports import SHOWS
-from quintet.components.sph_fluid.ranks.one import OneRank
 from quintet.components.sph_fluid.setup.tait import TAIT
 from quintet.interfaces.component import Component, Fields, Keys, Resources, Totals
 from quintet.interfaces.errors import SceneError
 
 FIRST_DEVICE = Resources(device="opencl")
+# Parts of the host that a device has too; not all are imported.
+PARTS = {
+    "NoSymmetry", "Symmetry", "HaloAndImages", "NoOpenBoundaries", "OneRank", "SeveralRanks",
+}  # fmt: skip
 
 
 class DeviceFluid(Component):
@@ -60,9 +61,8 @@ class DeviceFluid(Component):
         self.params, (self.takes, self.gives) = params, self.ports_of(params)
         self.host = SphFluid(params, replace(resources, device="cpu"))
         self.walls_move = self.host.walls_move
-        copies = make_copies(self.host.symmetry, resources.communicator)
-        self.several = copies is not None  # ranks
         self._refuse_other_parts(resources.device)
+        copies = copies_on_device(self.host.symmetry, resources.communicator)
         parts = (self.host.lists.reach, self.host.frame, self.host.damping)
         self.stepping = Stepping(params, queue, device.is_processor, *parts, copies)
         self._speed = 0.0  # m/s, of the fastest fluid, where the scheme looks ahead by it
@@ -72,12 +72,8 @@ class DeviceFluid(Component):
     def _refuse_other_parts(self, device: str) -> None:
         """Refuse parts that a step on the processor calls, and one on a device does not."""
         host = self.host
-        pairs: list[tuple[object, type]] = [(host.open_boundaries, NoOpenBoundaries)]
-        if not self.several:
-            pairs += [(host.symmetry, NoSymmetry), (host.all_ranks, OneRank)]
-        other_parts = [
-            type(part).__name__ for part, expected in pairs if type(part) is not expected
-        ]
+        parts = (host.symmetry, host.open_boundaries, host.all_ranks)
+        other_parts = [name for part in parts if (name := type(part).__name__) not in PARTS]
         if other_parts:
             raise SceneError(
                 f"on device {device}, a fluid must have no parts that the processor alone "
@@ -138,6 +134,7 @@ class DeviceFluid(Component):
         if extremes.failures:
             self._get()
             raise diagnostics.failure(state, self.params, dt, host.all_ranks)
+        self.stepping.rows.reflect_crossed()
         state.moved = extremes.moved
         state.largest_acceleration, state.largest_approach = extremes[:2]
         state.last_dt, state.steps = dt, state.steps + 1
@@ -167,12 +164,13 @@ class DeviceFluid(Component):
     def _sort(self) -> None:
         """Bring near rows together and list neighbours.
 
-        It is done on the host where there are several ranks, and where fluid left the tank.
+        It is done on the host where there are several ranks or planes of symmetry, and where fluid
+        left the tank.
         """
-        if self.several:
+        rows, state = self.stepping.rows, self.host.state
+        if rows.copies.are_there:
             self._sort_on_host()
             return
-        rows, state = self.stepping.rows, self.host.state
         low, high, densest, is_outside = rows.survey()
         densest_allowed = self.params.density * (1.0 + TAIT * diagnostics.MACH) ** (1.0 / TAIT)
         if is_outside or densest > densest_allowed:

@@ -1,19 +1,16 @@
 """The state of a fluid in the memory of a device, sorted by cell there."""
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from quintet.components.shared.opencl.arrays import DeviceArray, run
 from quintet.components.shared.opencl.cells import Cells, NearLists
-from quintet.components.shared.search.cells import Grid, grid_between
-from quintet.components.shared.search.neighbours import Lists
+from quintet.components.shared.search.cells import Grid, grid_between, sorted_into
+from quintet.components.shared.search.neighbours import Around, Lists
 from quintet.components.sph_fluid.opencl.copies import Copies
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.state import State, Whole
-
-if TYPE_CHECKING:  # loads mpi4py
-    from quintet.components.sph_fluid.ranks.halo import Around
 
 # Arrays of `State` that are on the device, by the rows that they have.
 OF_ALL = ("position_density", "velocity_pressure", "previous_density_rate", "minus_rho_div_u")
@@ -67,7 +64,7 @@ class DeviceState:
         """Mirror points (boundary, 3) of mirrored walls and samples."""
         return self.arrays["mirror_point"] if self.mirrored else None
 
-    def put(self, state: State, around: "Around | None" = None) -> None:
+    def put(self, state: State, around: Around | None = None) -> None:
         """Copy a state to the device; lists that it has are made again.
 
         `around` is what may be near, where that is more than the rows of the state.
@@ -77,7 +74,7 @@ class DeviceState:
         names = (*OF_ALL, *OF_FLUID, *OF_BOUNDARY)
         self.arrays = {name: DeviceArray.of(self.queue, getattr(state, name)) for name in names}
         self._spare = {}
-        if not self.copies.are_there:  # rows of several ranks are sorted on the host
+        if not self.copies.are_there:  # else rows are sorted on the host
             self._spare = {
                 name: DeviceArray(self.queue, array.shape, array.dtype)
                 for name, array in self.arrays.items()
@@ -134,6 +131,12 @@ class DeviceState:
         for arrays in (self.arrays, *([self._spare] if self._spare else [])):
             arrays["acceleration"] = DeviceArray(self.queue, (self.split, 3))
         return True
+
+    def reflect_crossed(self) -> None:
+        """Bring back fluid that passed a plane of symmetry."""
+        acceleration = self.arrays["acceleration"]
+        there = acceleration if acceleration.shape[0] else None
+        self.copies.reflect_crossed(self.split, self.position, self.velocity, there)
 
     def place(self, state: State, row: Whole) -> None:
         """Put the samples, which have rows (samples,) in a host's state, where that has them."""
@@ -237,21 +240,21 @@ class DeviceState:
             position, query_points, split, self.count, grid, starts, self.reach, self.extremes
         )
 
-    def _list_around(self, around: "Around") -> None:
+    def _list_around(self, around: Around) -> None:
         """List neighbours among this rank's rows and copies, where they are as they are listed."""
-        names = np.concatenate([around.fluid, around.boundary])
-        split, boundary_count = len(around.fluid), len(around.boundary)
+        points, groups, first = around.points, [], 0
+        starts = []
+        for group in (around.first, around.second):  # images are not in order yet
+            _, start, order = sorted_into(points.take(group, axis=0), around.grid)
+            groups.append(group[order])
+            starts.append(DeviceArray.of(self.queue, (first + start).astype(np.int32)))
+            first += len(group)
+        names = np.concatenate(groups)
         rows = np.zeros((len(names), 4))
-        rows[:, :3] = around.points.take(names, axis=0)
-        position, grid = DeviceArray.of(self.queue, rows), around.grid
-        groups = ((0, split), (split, boundary_count))
-        first, second = (
-            self.cells.starts(self.cells.sorted_keys(position, *group, grid), *group, grid)
-            for group in groups
-        )
+        rows[:, :3] = points.take(names, axis=0)
         self.lists = self.cells.lists(
-            position, DeviceArray.of(self.queue, around.looking), self.split, 0, grid,
-            (first, second), self.reach, self.extremes,
+            DeviceArray.of(self.queue, rows), DeviceArray.of(self.queue, around.looking),
+            self.split, 0, around.grid, (starts[0], starts[1]), self.reach, self.extremes,
             DeviceArray.of(self.queue, names.astype(np.int32)),
         )  # fmt: skip
 

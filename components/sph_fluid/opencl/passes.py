@@ -118,7 +118,7 @@ class Passes:
         """
         self.frame.set_time(later)
         self._write_boundary()
-        self.rows.copies.exchange(self.rows.position, self.rows.velocity)
+        self.rows.copies.write(self.rows.position, self.rows.velocity)
         rows, lists, law = self.rows, self.rows.lists, self.frame.law(self._law)
         structs = self._structs if law is self._law else self._structs_of(law)
         self._particles = self._in_precision()
@@ -137,7 +137,7 @@ class Passes:
         strides = (lists.row_stride, lists.item_stride)
         split, count = np.int32(rows.split), np.int32(rows.count)
         if self.params.mirrored:
-            rows.copies.exchange(rows.position, rows.velocity)
+            rows.copies.write(rows.position, rows.velocity)
             gravity = math.hypot(*self.frame.rest_acceleration)
             rest_gradient = self.params.density * gravity / self.params.sound_speed**2
             run(
@@ -154,7 +154,7 @@ class Passes:
                 self._constants, self._apparent,
             )  # fmt: skip
             assert self._apparent is not None
-            rows.copies.exchange(self._apparent)
+            rows.copies.write_apparent(self._apparent)
 
     def push_samples(self) -> Array:
         """Forces (samples, 3) N on samples: minus those of the last pass on the fluid."""

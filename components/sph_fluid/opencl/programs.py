@@ -34,13 +34,12 @@ def rows_program(
     lanes: int,
     forces: "FrameForces | None" = None,
     damps: bool = False,
-    several: bool = False,
+    more: str = "",
 ) -> str:
     """Sorting, searching, the boundary and steps: always in double precision.
 
     `precision` is that of the rates, of which steps are made; `forces` are those of a frame that
-    moves; `damps` tells whether there are damping zones; `several` whether there are copies of
-    other ranks' rows.
+    moves; `damps` tells whether there are damping zones; `more` are further kernels.
     """
     program, constants = Program("double", lanes), law.constants
     search = cells.source(program)
@@ -82,12 +81,7 @@ def rows_program(
             _named(program, "damped_share", damped_share, 0.0, 0.0, 0.0),
         ]
         sources.append("damping")
-    if several:
-        # Left out of fluids on one rank.
-        from quintet.components.shared.opencl import halo
-
-        search += halo.source()
-    return "\n".join([program.text, *names, search, *_sources("lanes", *sources)])
+    return "\n".join([program.text, *names, search, *_sources("lanes", *sources), more])
 
 
 def pairs_program(law: PairLaw, precision: Precision, lanes: int, apparent: bool = False) -> str:

@@ -9,11 +9,11 @@ SUPPORTED = frozenset(
     """material xsph shepard_every acoustic_damper spacing sound_speed fluid initial lost_limit
     remove_inside_bodies dimensions kernel smoothing staggered density gravity density_diffusion
     negative_pressure precision integration courant gauges wave viscosity.artificial
-    viscosity.kinematic viscosity.form boundary.walls boundary.open_faces boundary.wall_velocity
-    boundary.obstacles boundary.meshes boundary.motion boundary.pistons boundary.damping
-    boundary.wall_offset boundary.sample_depth boundary.wall_viscosity_factor
-    boundary.lubrication_films boundary.roughness boundary.potential_stiffness
-    boundary.potential_exponent""".split()
+    viscosity.kinematic viscosity.form boundary.walls boundary.symmetry
+    boundary.open_faces boundary.wall_velocity boundary.obstacles boundary.meshes boundary.motion
+    boundary.pistons boundary.damping boundary.wall_offset boundary.sample_depth
+    boundary.wall_viscosity_factor boundary.lubrication_films boundary.roughness
+    boundary.potential_stiffness boundary.potential_exponent""".split()
 )
 
 
@@ -40,7 +40,7 @@ def limits(params: SphFluidParams) -> dict[str, tuple[object, bool, str, str]]:
     edge = params.boundary
     lists = {
         f"boundary.{name}": (len(getattr(edge, name)), bool(getattr(edge, name)), "empty")
-        for name in ("symmetry", "periodic", "inflow", "outflow")
+        for name in ("periodic", "inflow", "outflow")
     }
     choices = {
         "boundary.method": (edge.method, edge.method == "potential", "mdbc or dbc"),

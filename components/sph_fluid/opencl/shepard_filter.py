@@ -21,7 +21,7 @@ class DeviceFilter:
     def apply(self) -> None:
         """Filter the fluid's density, and compute pressures again."""
         rows, lists, split = self.rows, self.rows.lists, np.int32(self.rows.split)
-        rows.copies.exchange(rows.position, rows.velocity)
+        rows.copies.write(rows.position, rows.velocity)
         density = DeviceArray(rows.queue, (rows.split,))
         run(
             rows.queue, self._filter, rows.split, split, rows.position, lists.near, lists.middle,

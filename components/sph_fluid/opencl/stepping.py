@@ -10,7 +10,7 @@ from quintet.components.shared.opencl.devices import build
 from quintet.components.shared.opencl.prelude import Precision
 from quintet.components.sph_fluid.constants import pair_law
 from quintet.components.sph_fluid.motion.frame import Frame
-from quintet.components.sph_fluid.opencl.copies import MakeCopies, NoCopies
+from quintet.components.sph_fluid.opencl.copies import CopiesOnDevice
 from quintet.components.sph_fluid.opencl.device_state import DeviceState
 from quintet.components.sph_fluid.opencl.passes import Passes
 from quintet.components.sph_fluid.opencl.programs import rows_program
@@ -53,8 +53,7 @@ class Stepping:
     frame : Frame
         In which the fluid is computed.
     damping : Damping
-    make_copies : MakeCopies, or None
-        Makes copies of other ranks' rows, of a fluid on several.
+    copies : CopiesOnDevice
     """
 
     def __init__(
@@ -65,18 +64,17 @@ class Stepping:
         reach: float,
         frame: Frame,
         damping: Damping,
-        make_copies: MakeCopies | None,
+        copies: CopiesOnDevice,
     ) -> None:
         self.params, self.queue = params, queue
         precision: Precision = "double" if params.precision == "float64" else "single"
         law, lanes = pair_law(params), LANES_OF_PROCESSORS if is_processor else 1
         damps = not isinstance(damping, NoDamping)
-        several = make_copies is not None
-        text = rows_program(law, precision, lanes, frame.forces, damps, several)
+        text = rows_program(law, precision, lanes, frame.forces, damps, copies.source)
         kernels = build(self.queue, text)
         self._of_films = kernels.film_sides, kernels.fluid_share
-        copies = make_copies(self.queue, kernels) if make_copies else NoCopies()
-        self.rows = DeviceState(self.queue, kernels, params, reach, is_processor, copies)
+        behind = copies.make(self.queue, kernels)
+        self.rows = DeviceState(self.queue, kernels, params, reach, is_processor, behind)
         self.passes = Passes(params, lanes, kernels, self.rows, precision, frame)
         self._scheme = scheme(params, kernels, self.rows, self.passes)
         self.damping = damping_zones(damping, kernels, self.rows)

@@ -1,29 +1,18 @@
 """Copies of the fluid and the boundary of other ranks, and images in planes of symmetry."""
 
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from quintet.components.shared.domain.copies import CopiesAndImages, Group
 from quintet.components.shared.domain.sorting import grid_of_all
-from quintet.components.shared.search.cells import Grid
-from quintet.components.shared.search.neighbours import NeighbourLists, neighbours_among
-from quintet.components.shared.symmetry import Plane
+from quintet.components.shared.search.neighbours import Around, NeighbourLists, neighbours_among
+from quintet.components.shared.symmetry import Plane, SymmetryImages
 from quintet.components.shared.threads import Team
 from quintet.components.sph_fluid.ranks.several import Keys
 from quintet.components.sph_fluid.state import Array, State, Whole
 from quintet.interfaces.component import Fields
-
-
-class Around(NamedTuple):
-    """All that the rows of a rank may have as neighbours, where it was listed."""
-
-    points: Array  # (n + copies + images, 3) m, by row
-    fluid: Whole  # (k,) rows of the fluid, in the order in which one rank would have them
-    boundary: Whole  # (m,) the same of the boundary
-    looking: Array  # (q, 3) m, points that look: the rank's own fluid, then others
-    grid: Grid
 
 
 class HaloAndImages:
@@ -41,8 +30,8 @@ class HaloAndImages:
     def __init__(self, communicator: Any, keys: Keys, planes: list[Plane]) -> None:
         self._communicator, self._keys = communicator, keys
         self._rows = CopiesAndImages(communicator, planes)
-        self._images = self._rows.images
-        self.all_images = self._images.all_images
+        self.images: SymmetryImages = self._rows.images
+        self.all_images = self.images.all_images
         self.write_vectors = self._rows.write_vectors
 
     @property
@@ -90,7 +79,7 @@ class HaloAndImages:
         rows = slice(state.fluid)
         vectors = [state.velocity_pressure[rows]]
         vectors += [state.acceleration] if len(state.acceleration) else []
-        self._images.reflect_crossed(state.position_density[rows], *vectors)
+        self.images.reflect_crossed(state.position_density[rows], *vectors)
 
     def wrap(self, state: State) -> None:
         """Nothing to do: nothing repeats."""
@@ -101,4 +90,4 @@ class HaloAndImages:
 
     def require_before(self, samples: Array) -> None:
         """Refuse samples (samples, 3) m behind a plane."""
-        self._images.require_before(samples, "surface: sample")
+        self.images.require_before(samples, "surface: sample")

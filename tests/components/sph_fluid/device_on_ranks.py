@@ -1,6 +1,6 @@
 """Program that test_sph_fluid_opencl_ranks.py runs: fluids of fluid_on_ranks.py on devices.
 
-Each rank names a device, all of them the first. Planes of symmetry are replaced by walls.
+Each rank names a device, all of them the first.
 """
 
 import fluid_on_ranks
@@ -10,11 +10,7 @@ from solver_run import COMMUNICATOR, WORLD
 from quintet.components.sph_fluid.opencl.device_fluid import DeviceFluid
 from quintet.interfaces.component import Resources
 
-WALLED = {"boundary__symmetry": []}
 PARAMS |= {
-    "damped": PARAMS["symmetric"] | WALLED,
-    "rounded": PARAMS["single"] | WALLED,
-    "shaken": PARAMS["swaying"] | WALLED,
     "uneven": PARAMS["block"] | {"fluid": [((0.0, 0.0, 0.0), (0.57, 0.4, 0.37))]},
     "filmed": PARAMS["body"]
     | {"boundary__lubrication_films": "auto", "remove_inside_bodies": True},

@@ -48,6 +48,36 @@ def test_a_device_computes_as_the_processor_does(table, steps):
     assert np.abs(first["reference"] - second["reference"]).max() < 1e-13
 
 
+def symmetric(table, *faces):
+    """Return a table with planes of symmetry."""
+    return table | {"boundary": table["boundary"] | {"symmetry": [*faces]}}
+
+
+@pytest.mark.parametrize(
+    ("table", "steps"),
+    [
+        (symmetric(MIRRORED | TWICE, "x-"), 100),
+        (symmetric(DYNAMIC, "x-", "y+"), 60),
+        pytest.param(
+            symmetric(MIRRORED, "x-") | {"viscosity": {"kinematic": 1e-3}, "shepard_every": 9},
+            100,
+            marks=pytest.mark.full,
+        ),
+    ],
+)
+def test_planes_of_symmetry_are_those_of_the_processor(table, steps):
+    params = params_of(table)
+    processor, device = (
+        advanced(SphFluid(params), steps),
+        advanced(DeviceFluid(params, DEVICE), steps),
+    )
+    assert device.stepping.rows.copies.count > 0
+    assert difference(processor, device, "points") < 1e-13
+    assert difference(processor, device, "velocity") < 2e-7  # both are rounded to single
+    first, second = processor.save(), device.save()
+    assert np.array_equal(first["identity"], second["identity"])  # sorted alike
+
+
 @pytest.mark.parametrize("table", [MIRRORED, DYNAMIC | TWICE])
 def test_a_device_that_is_no_processor_gets_lists_by_columns_and_single_lanes(table, monkeypatch):
     monkeypatch.setattr(Device, "is_processor", property(lambda self: False))
@@ -153,7 +183,6 @@ SIDES = ["y-", "y+", "z-", "z+"]
 WALLED = DYNAMIC["boundary"] | {"open_faces": SIDES}
 REFUSED = {
     "boundary.method": {"boundary": DYNAMIC["boundary"] | {"method": "potential"}},
-    "boundary.symmetry": {"boundary": DYNAMIC["boundary"] | {"symmetry": ["y-"]}},
     "boundary.periodic": {"boundary": WALLED | {"periodic": ["x"]}, "gravity": [1.0, 0.0, 0.0]},
     "boundary.inflow": CHANNEL,
     "boundary.outflow": CHANNEL,
@@ -172,8 +201,8 @@ def test_inflows_are_refused_with_what_to_do():
 
 def test_parts_of_the_host_that_no_key_tells_of_are_refused(monkeypatch):
     monkeypatch.setattr(device_fluid, "refuse_what_needs_the_processor", lambda *_: None)
-    with pytest.raises(SceneError, match=r"on device opencl, .* found Symmetry\. Set device"):
-        DeviceFluid(params_of(DYNAMIC | REFUSED["boundary.symmetry"]), DEVICE)
+    with pytest.raises(SceneError, match=r"on device opencl, .* found PeriodicImages\. Set device"):
+        DeviceFluid(params_of(DYNAMIC | REFUSED["boundary.periodic"]), DEVICE)
 
 
 def test_every_key_of_a_fluid_is_supported_or_limited():
