@@ -73,6 +73,76 @@ def viscous_pressure(mu, sound_sum, per_density, densities, law):  # type: ignor
 
 
 @njit(inline="always")
+def add_outer(sums, change, slope):  # type: ignore[no-untyped-def]
+    """Add the outer product of two vectors to nine sums, by rows."""
+    m00, m01, m02, m10, m11, m12, m20, m21, m22 = sums
+    u, v, w = change
+    x, y, z = slope
+    return (
+        m00 + u * x, m01 + u * y, m02 + u * z, m10 + v * x, m11 + v * y, m12 + v * z, m20 + w * x,
+        m21 + w * y, m22 + w * z,
+    )  # fmt: skip
+
+
+@njit(inline="always")
+def add_moments(sums, offset, slope):  # type: ignore[no-untyped-def]
+    """Add (x_j - x_i) ⊗ V_j ∇W_ij, of offsets x_i - x_j, to six sums xx yy zz xy yz zx."""
+    xx, yy, zz, xy, yz, zx = sums
+    dx, dy, dz = offset
+    x, y, z = slope
+    return xx - dx * x, yy - dy * y, zz - dz * z, xy - dx * y, yz - dy * z, zx - dz * x
+
+
+@njit(inline="always")
+def add_force(sums, offset, change, dot, weight, stress, q, push, law):  # type: ignore[no-untyped-def]
+    """Add V_j (τ_i + τ_j - q_ij) ∇W_ij and its heat to four sums.
+
+    Parameters
+    ----------
+    sums : four floats
+    offset, change : three floats each, m and m/s
+        x_i - x_j and v_i - v_j.
+    dot : float, m2/s
+        Their product.
+    weight : float
+        V_j (dW/dr)/r.
+    stress : nine floats, Pa
+        τ_i + τ_j, by rows.
+    q : float, Pa
+        Of the artificial viscosity.
+    push : three floats, Pa m
+        Artificial stress times the offset, of a law that has it.
+    law : PairLaw
+    """
+    fx, fy, fz, heat = sums
+    dx, dy, dz = offset
+    t00, t01, t02, t10, t11, t12, t20, t21, t22 = stress
+    t00, t11, t22 = t00 - q, t11 - q, t22 - q
+    x, y, z = (
+        t00 * dx + t01 * dy + t02 * dz,
+        t10 * dx + t11 * dy + t12 * dz,
+        t20 * dx + t21 * dy + t22 * dz,
+    )
+    work = q * dot
+    if law.artificial is not None:
+        x, y, z = x + push[0], y + push[1], z + push[2]
+        work -= push[0] * change[0] + push[1] * change[1] + push[2] * change[2]
+    return fx + weight * x, fy + weight * y, fz + weight * z, heat + weight * work
+
+
+@njit(inline="always")
+def stable_step(sound, mu, law):  # type: ignore[no-untyped-def]
+    """Step [s] of a particle of a speed of sound [m/s] and the greatest |μ| [m/s] of its pairs.
+
+    References
+    ----------
+    Monaghan, Annu. Rev. Astron. Astrophys. 30 (1992) 543, section 10.3.
+    """
+    drag = law.linear * sound + law.quadratic * mu
+    return law.smoothing.length / (sound + 1.2 * drag)
+
+
+@njit(inline="always")
 def nearness(r2, law):  # type: ignore[no-untyped-def]
     """Share f⁴, f = W(r)/W(Δ), of the artificial stress that two particles feel at a distance r.
 

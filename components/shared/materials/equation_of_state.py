@@ -87,8 +87,14 @@ def temperature(mu, energy, law):  # type: ignore[no-untyped-def]
 @njit(**FAST_LANEWISE)
 def place_on_isentrope(mu, law):  # type: ignore[no-untyped-def]
     """Where in the isentrope's table a density stands, in rows, and the row before it."""
+    return place_in_table(mu, law.isentrope.shape[0], law)
+
+
+@njit(**FAST_LANEWISE)
+def place_in_table(mu, rows, law):  # type: ignore[no-untyped-def]
+    """Where in a table of so many rows a density stands, in rows, and the row before it."""
     place = (mu / (1.0 + mu) - law.first) / law.step
-    return place, min(max(int(place), 0), law.isentrope.shape[0] - 2)
+    return place, min(max(int(place), 0), rows - 2)
 
 
 @njit(**FAST_LANEWISE)

@@ -64,6 +64,8 @@ class Statements:
                 return self._if(node, depth)
             case ast.For():
                 self._for(node, depth)
+            case ast.Break():
+                self._write("break;", depth)
             case _:
                 text = ast.unparse(node).splitlines()[0]
                 raise self.refuse(

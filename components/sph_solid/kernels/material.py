@@ -36,6 +36,19 @@ class Points(NamedTuple):
     heating: Array
 
 
+class Point(NamedTuple):
+    """What a step changes of one particle's state."""
+
+    deviator: tuple[float, float, float, float, float, float]  # Pa
+    density_ratio: float
+    pressure: float  # Pa
+    energy: float  # J/kg
+    strain: float
+    temperature: float  # K
+    damage: float
+    failed: float  # 1 or 0
+
+
 @njit(**INNER)
 def power(s, m):  # type: ignore[no-untyped-def]
     """s:M of a deviator and a matrix (nine, by rows)."""
@@ -67,29 +80,111 @@ def nine_of(array, i):  # type: ignore[no-untyped-def]
 
 
 @njit(inline="always")
-def rates(i, eta, gradient, correction, dt):  # type: ignore[no-untyped-def]
-    """η L and L [1/s] of a particle in the middle of the step, and the growth of η in it.
+def six_of(array, i):  # type: ignore[no-untyped-def]
+    """Row of six numbers, as a tuple."""
+    a = array[i]
+    return a[0], a[1], a[2], a[3], a[4], a[5]
 
-    Gradients are L where they are corrected, and η L elsewhere.
-    """
-    m = nine_of(gradient, i)
-    trace = m[0] + m[4] + m[8]
-    if correction.shape[0] > 0 and correction[i, 0] != 0.0:
-        middle = eta / (1.0 + 0.5 * dt * trace)
-        scale, per = middle, 1.0
-    else:
-        middle = eta - 0.5 * dt * trace
-        scale, per = 1.0, 1.0 / middle
+
+@njit(inline="always")
+def trace_of(m):  # type: ignore[no-untyped-def]
+    """Trace of a matrix, nine by rows."""
+    return m[0] + m[4] + m[8]
+
+
+@njit(inline="always")
+def corrected_scales(eta, trace, dt):  # type: ignore[no-untyped-def]
+    """Factors that make η L and L of a corrected gradient L of this trace [1/s]."""
+    return eta / (1.0 + 0.5 * dt * trace), 1.0
+
+
+@njit(inline="always")
+def plain_scales(eta, trace, dt):  # type: ignore[no-untyped-def]
+    """Factors that make η L and L of a gradient η L of this trace [1/s]."""
+    return 1.0, 1.0 / (eta - 0.5 * dt * trace)
+
+
+@njit(inline="always")
+def rates(m, scales, trace, dt):  # type: ignore[no-untyped-def]
+    """η L and L [1/s] of a particle in the middle of the step, and the growth of η in it."""
+    scale, per = scales
     return times_number(scale, m), times_number(per, m), -dt * scale * trace
 
 
 @njit(inline="always")
-def fails(i, s, pressure, delta, warm, points, law, dt):  # type: ignore[no-untyped-def]
-    """Whether a particle fails now, of a plastic strain delta in the step; damage grows by it."""
-    if delta > 0.0:
-        points.damage[i] += damage_growth(s, pressure, delta, warm, dt, law)
-    tears = points.strain[i] >= law.failure_strain or points.damage[i] >= 1.0
+def fails(s, pressure, strain, damage, law):  # type: ignore[no-untyped-def]
+    """Whether a particle fails now, of its plastic strain, damage and stress."""
+    tears = strain >= law.failure_strain or damage >= 1.0
     return tears or is_torn(s, pressure, law.spall)
+
+
+@njit(inline="always")
+def advanced(point, rate_of_point, heating, dt, law):  # type: ignore[no-untyped-def]
+    """Stress, energy and failure of a particle after a step.
+
+    Parameters
+    ----------
+    point : Point
+    rate_of_point
+        As `rates` returns them.
+    heating : float, W/kg
+        Of the artificial viscosity.
+    dt : float, s
+    law : Solid
+
+    Returns
+    -------
+    Point
+        With the temperature of the plastic work; see `shocked_temperature` where the material has
+        an equation of state.
+    """
+    s, eta, pressure, energy, strain, warm, damage, is_broken = point
+    per_start = 1.0 / law.density
+    rate, strain_rate, grows = rate_of_point
+    after = max(eta + grows, LEAST)
+    before2, after2 = 1.0 / (eta * eta), 1.0 / (after * after)
+    failed = is_broken != 0.0
+    # Works of the step's two halves are those of the two ends' forces.
+    half = 0.5 * dt * per_start
+    energy += 0.5 * dt * heating
+    energy += half * before2 * power(s, rate) + 0.5 * pressure * before2 * per_start * grows
+    delta = 0.0
+    if not failed:
+        s = turned_and_strained(s, strain_rate, law.shear, dt)
+        s, delta, work = returned(s, strain, warm, dt, law)
+        strain += delta
+        if not law.shocks:
+            warm += law.heating * work
+    mu, change = after - 1.0, -grows * after2 * per_start
+    deviatoric = half * after2 * power(s, rate)
+    pressure, whole = pressure_and_energy(mu, energy + deviatoric, change, law)
+    if not failed:
+        if delta > 0.0:
+            damage += damage_growth(s, pressure, delta, warm, dt, law)
+        if fails(s, pressure, strain, damage, law):
+            failed, damage = True, 1.0
+            s = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+            pressure, whole = pressure_and_energy(mu, energy, change, law)
+    if failed and pressure < 0.0:
+        pressure, whole = 0.0, energy
+    return Point(s, after, pressure, whole, strain, warm, damage, 1.0 if failed else 0.0)
+
+
+@njit(inline="always")
+def stretch_of_heat(density_ratio, failed):  # type: ignore[no-untyped-def]
+    """μ = η - 1 that the temperature follows: what has failed opens, and is not stretched."""
+    mu = density_ratio - 1.0
+    return max(mu, 0.0) if failed != 0.0 else mu
+
+
+@njit(inline="always")
+def sound_speed(point, law):  # type: ignore[no-untyped-def]
+    """Speed [m/s] of longitudinal waves; of sound where a particle has failed."""
+    mu = point.density_ratio - 1.0
+    squared = sound_speed_squared(mu, point.energy, point.pressure, law)
+    if point.failed != 0.0:
+        squared -= 4.0 / 3.0 * law.shear * (1.0 / law.density) / point.density_ratio
+    return math.sqrt(squared)
 
 
 @njit(**FAST)
@@ -117,47 +212,46 @@ def advance(
     deviator, ratios, pressures, energies, strains, warmth, damages, failures, sounds, heating = (
         points
     )
-    per_start = 1.0 / law.density
     for place in range(first, last):
         i = rows[place]
-        eta = ratios[i]
-        rate, strain_rate, grows = rates(i, eta, gradient, correction, dt)
-        after = max(eta + grows, LEAST)
-        before2, after2 = 1.0 / (eta * eta), 1.0 / (after * after)
-        s = (deviator[i, 0], deviator[i, 1], deviator[i, 2], deviator[i, 3], deviator[i, 4],
-             deviator[i, 5])  # fmt: skip
-        pressure, failed, warm = pressures[i], failures[i] != 0.0, warmth[i]
-        # Works of the step's two halves are those of the two ends' forces.
-        half = 0.5 * dt * per_start
-        energy = energies[i] + 0.5 * dt * heating[i]
-        energy += half * before2 * power(s, rate) + 0.5 * pressure * before2 * per_start * grows
-        delta = 0.0
-        if not failed:
-            s = turned_and_strained(s, strain_rate, law.shear, dt)
-            s, delta, work = returned(s, strains[i], warm, dt, law)
-            strains[i] += delta
-            if not law.shocks:
-                warm += law.heating * work
-        mu, change = after - 1.0, -grows * after2 * per_start
-        deviatoric = half * after2 * power(s, rate)
-        pressure, whole = pressure_and_energy(mu, energy + deviatoric, change, law)
-        if not failed and fails(i, s, pressure, delta, warm, points, law, dt):
-            failed, failures[i], damages[i] = True, 1.0, 1.0
-            s = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-            pressure, whole = pressure_and_energy(mu, energy, change, law)
-        if failed and pressure < 0.0:
-            pressure, whole = 0.0, energy
-        energies[i], ratios[i], pressures[i] = whole, after, pressure
+        # In this order the compiler rounds as it always did.
+        eta, m = ratios[i], nine_of(gradient, i)
+        trace = trace_of(m)
+        if correction.shape[0] > 0 and correction[i, 0] != 0.0:
+            scales = corrected_scales(eta, trace, dt)
+        else:
+            scales = plain_scales(eta, trace, dt)
+        rate = rates(m, scales, trace, dt)
+        s, pressure, failed, warm = six_of(deviator, i), pressures[i], failures[i], warmth[i]
+        energy, heat, strain, damage = energies[i], heating[i], strains[i], damages[i]
+        before = Point(s, eta, pressure, energy, strain, warm, damage, failed)
+        after = advanced(before, rate, heat, dt, law)
+        s, ratios[i], pressures[i], energies[i], strains[i], warm, damages[i], failures[i] = after
         if law.shocks:
-            # What has failed opens, and is not stretched.
-            warm = temperature(max(mu, 0.0) if failed else mu, whole, law)
+            warm = temperature(stretch_of_heat(ratios[i], failures[i]), energies[i], law)
         warmth[i] = warm
-        squared = sound_speed_squared(mu, whole, pressure, law)
-        if failed:
-            squared -= 4.0 / 3.0 * law.shear * per_start / after
-        sounds[i] = math.sqrt(squared)
+        sounds[i] = sound_speed(after, law)
         for d in range(6):
             deviator[i, d] = s[d]
+
+
+@njit(inline="always")
+def divided_stress(s, pressure, eta):  # type: ignore[no-untyped-def]
+    """τ = σ/η² [Pa], six numbers."""
+    per = 1.0 / (eta * eta)
+    xx, yy, zz, xy, yz, zx = s
+    xx, yy, zz = xx - pressure, yy - pressure, zz - pressure
+    return per * xx, per * yy, per * zz, per * xy, per * yz, per * zx
+
+
+@njit(inline="always")
+def corrected_stress(tau, eta, b):  # type: ignore[no-untyped-def]
+    """σ K⁻¹/η [Pa], nine numbers by rows, of τ and the inverse of K; τ where that is 0."""
+    xx, yy, zz, xy, yz, zx = tau
+    nine = xx, xy, zx, xy, yy, yz, zx, yz, zz
+    if b[0] == 0.0:
+        return nine
+    return times(nine, (eta * b[0], eta * b[1], eta * b[2], eta * b[3], eta * b[4], eta * b[5]))
 
 
 @njit(**EXACT)
@@ -179,24 +273,16 @@ def write_stresses(
     """
     nine = stress.shape[1] == 12
     for i in range(first, last):
-        eta, p = points.density_ratio[i], points.pressure[i]
-        start = density[material[i]]
-        per = 1.0 / (eta * eta)
-        xx, yy, zz = points.deviator[i, 0] - p, points.deviator[i, 1] - p, points.deviator[i, 2] - p
-        xy, yz, zx = points.deviator[i, 3], points.deviator[i, 4], points.deviator[i, 5]
+        eta, start = points.density_ratio[i], density[material[i]]
+        tau = divided_stress(six_of(points.deviator, i), points.pressure[i], eta)
         if not nine:
-            stress[i, 0], stress[i, 1], stress[i, 2] = per * xx, per * yy, per * zz
-            stress[i, 3], stress[i, 4], stress[i, 5] = per * xy, per * yz, per * zx
+            for d in range(6):
+                stress[i, d] = tau[d]
             stress[i, 6], stress[i, 7] = start * eta, start
             continue
-        xx, yy, zz, xy, yz, zx = per * xx, per * yy, per * zz, per * xy, per * yz, per * zx
-        tau = xx, xy, zx, xy, yy, yz, zx, yz, zz
-        if correction[i, 0] != 0.0:
-            bxx, byy, bzz = correction[i, 0], correction[i, 1], correction[i, 2]
-            bxy, byz, bzx = correction[i, 3], correction[i, 4], correction[i, 5]
-            tau = times(tau, (eta * bxx, eta * byy, eta * bzz, eta * bxy, eta * byz, eta * bzx))
+        rows = corrected_stress(tau, eta, six_of(correction, i))
         for d in range(9):
-            stress[i, d] = tau[d]
+            stress[i, d] = rows[d]
         stress[i, 9], stress[i, 10], stress[i, 11] = start * eta, start, 0.0
 
 

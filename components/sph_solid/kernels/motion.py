@@ -63,6 +63,22 @@ def drift_half(
         motion[i, 3] = sound[i]
 
 
+@njit(inline="always")
+def meets(apart, before, support, skin):  # type: ignore[no-untyped-def]
+    """Whether two are within the support that came nearer or went apart by more than the skin.
+
+    Parameters
+    ----------
+    apart, before : three floats, m
+        From one to the other, now and where they were listed.
+    support, skin : float, m
+    """
+    x, y, z = apart
+    dx, dy, dz = x - before[0], y - before[1], z - before[2]
+    is_near = x * x + y * y + z * z < support * support
+    return is_near and dx * dx + dy * dy + dz * dz > skin * skin
+
+
 @njit(**EXACT)
 def meets_unlisted(
     fast: Whole, middle: Array, end: Array, reference: Array, support: float, skin: float
@@ -82,13 +98,15 @@ def meets_unlisted(
         i = fast[q]
         for places in (middle, end):
             for j in range(reference.shape[0]):
-                near, moved = 0.0, 0.0
-                for d in range(3):
-                    apart = places[i, d] - places[j, d]
-                    near += apart * apart
-                    apart -= reference[i, d] - reference[j, d]
-                    moved += apart * apart
-                if near < support * support and moved > skin * skin:
+                apart = (
+                    places[i, 0] - places[j, 0], places[i, 1] - places[j, 1],
+                    places[i, 2] - places[j, 2],
+                )  # fmt: skip
+                before = (
+                    reference[i, 0] - reference[j, 0], reference[i, 1] - reference[j, 1],
+                    reference[i, 2] - reference[j, 2],
+                )  # fmt: skip
+                if meets(apart, before, support, skin):
                     return True
     return False
 

@@ -21,7 +21,7 @@ from quintet.components.sph_solid.kernels.sums import (
     sum_forces,
     sum_gradients,
 )
-from quintet.components.sph_solid.laws import PairLaw
+from quintet.components.sph_solid.laws import PairLaw, stable_step
 from quintet.components.sph_solid.state import Array
 
 
@@ -100,10 +100,6 @@ def accelerations(
     -------
     float, s : least h/(c + 1.2 (α c + β max|μ|)) of all
     float, m2/s4 : greatest square of an acceleration
-
-    References
-    ----------
-    Monaghan, Annu. Rev. Astron. Astrophys. 30 (1992) 543, section 10.3 (step).
     """
     acceleration, heating = forces
     rows = longest_list(first, last, lists.begin, lists.end)
@@ -125,7 +121,6 @@ def accelerations(
         fx, fy, fz = fx * per, y * fy * per, fz * per
         acceleration[i, 0], acceleration[i, 1], acceleration[i, 2] = fx, fy, fz
         heating[i] = 0.5 * heat * per
-        drag = law.linear * sound + law.quadratic * mu
-        slowest = min(slowest, law.smoothing.length / (sound + 1.2 * drag))
+        slowest = min(slowest, stable_step(sound, mu, law))
         greatest = max(greatest, fx * fx + fy * fy + fz * fz)
     return slowest, greatest

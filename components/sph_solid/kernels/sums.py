@@ -16,6 +16,9 @@ from quintet.components.shared.smoothing.cubic_spline import ONE, ZERO
 from quintet.components.shared.smoothing.smoothing import gradient
 from quintet.components.sph_solid.laws import (
     SINGULAR,
+    add_force,
+    add_moments,
+    add_outer,
     inverse,
     inverses,
     nearness,
@@ -47,34 +50,19 @@ def sum_gradients(count, particle, near, moves, law):  # type: ignore[no-untyped
     float : 0 if no neighbour has failed
     """
     x, y, z, u, v, w = particle
-    m00, m01, m02, m10, m11, m12, m20, m21, m22 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-    kxx, kyy, kzz, kxy, kyz, kzx, broken = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    sums = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    matrix, broken = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0), 0.0
     for k in range(count):
         dx, dy, dz = x - near[k, 0], y - near[k, 1], z - near[k, 2]
         r2 = dx * dx + dy * dy + dz * dz
         per_r = ONE / math.sqrt(r2 + law.smoothing.tiny)
         weight = gradient(r2, per_r, law.smoothing) * near[k, 3]
-        gx, gy, gz = weight * dx, weight * dy, weight * dz
-        du, dv, dw = moves[k, 0] - u, moves[k, 1] - v, moves[k, 2] - w
-        m00 += du * gx
-        m01 += du * gy
-        m02 += du * gz
-        m10 += dv * gx
-        m11 += dv * gy
-        m12 += dv * gz
-        m20 += dw * gx
-        m21 += dw * gy
-        m22 += dw * gz
+        slope = weight * dx, weight * dy, weight * dz
+        sums = add_outer(sums, (moves[k, 0] - u, moves[k, 1] - v, moves[k, 2] - w), slope)
         if law.corrected is not None:
-            kxx -= dx * gx
-            kyy -= dy * gy
-            kzz -= dz * gz
-            kxy -= dx * gy
-            kyz -= dy * gz
-            kzx -= dz * gx
+            matrix = add_moments(matrix, (dx, dy, dz), slope)
             broken -= weight * moves[k, 3]
-    matrix = kxx, kyy, kzz, kxy, kyz, kzx
-    return (m00, m01, m02, m10, m11, m12, m20, m21, m22), matrix, broken
+    return sums, matrix, broken
 
 
 @njit(inline="always")
@@ -103,7 +91,7 @@ def sum_forces(count, particle, row, near, moves, tension, law):  # type: ignore
     law : PairLaw
     """
     x, y, z, u, v, w, sound = particle
-    fx, fy, fz, heat, fastest = 0.0, 0.0, 0.0, 0.0, np.int64(0)
+    sums, fastest = (0.0, 0.0, 0.0, 0.0), np.int64(0)
     column = 6 if law.corrected is None else 9  # of ρ; that of ρ₀ follows
     density, start = densities(row, law)
     for k in range(count):
@@ -117,13 +105,10 @@ def sum_forces(count, particle, row, near, moves, tension, law):  # type: ignore
         starts = start * tension[k, column + 1]
         q = viscous_pressure(mu, sound + moves[k, 3], per_density, starts, law)
         fastest = max(fastest, bits_of(mu))
-        t00, t01, t02, t10, t11, t12, t20, t21, t22 = summed_stress(row, tension, k, law)
-        t00, t11, t22 = t00 - q, t11 - q, t22 - q
-        ax, ay, az = repulsion(row, tension, k, (dx, dy, dz), r2, law)
-        fx += weight * (t00 * dx + t01 * dy + t02 * dz + ax)
-        fy += weight * (t10 * dx + t11 * dy + t12 * dz + ay)
-        fz += weight * (t20 * dx + t21 * dy + t22 * dz + az)
-        heat += weight * (q * dot - (ax * du + ay * dv + az * dw))
+        stress = summed_stress(row, tension, k, law)
+        push = repulsion(row, tension, k, (dx, dy, dz), r2, law)
+        sums = add_force(sums, (dx, dy, dz), (du, dv, dw), dot, weight, stress, q, push, law)
+    fx, fy, fz, heat = sums
     return fx, fy, fz, heat, fastest
 
 
