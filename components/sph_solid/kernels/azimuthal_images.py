@@ -60,6 +60,48 @@ def image_counts(radius: Array, length: float) -> Whole:
     return np.maximum(np.ceil(math.pi / np.arcsin(chord)), FEWEST).astype(np.int64)
 
 
+@njit(inline="always")
+def turns_of_pair(n, is_close, all_of_few):  # type: ignore[no-untyped-def]
+    """First row in the table of turns of n images, and how many rows may be near.
+
+    Close to the axis these are all of a circle, which the table has from `all_of_few` on.
+    """
+    if is_close:
+        return all_of_few + (WHOLE // 2 + 1) * n, n // 2 + 1
+    return 3 * n, 3
+
+
+@njit(inline="always")
+def turned_square(flat, x, r, cosine):  # type: ignore[no-untyped-def]
+    """Square [m2] of the distance from a ring at the radius x to the turned image of one at r.
+
+    `flat` is that to the ring as it is, and `cosine` that of the turn.
+    """
+    return flat + 2.0 * x * r * (1.0 - cosine)
+
+
+@njit(inline="always")
+def turned_vector(c, s, x, z):  # type: ignore[no-untyped-def]
+    """Vector of the plane, (x, 0, z), turned about the axis by a cosine and sine."""
+    return c * x, s * x, z
+
+
+@njit(inline="always")
+def turned_six(c, s, xx, yy, zz, zx):  # type: ignore[no-untyped-def]
+    """A τ Aᵀ of a symmetric tensor, six numbers."""
+    return c * c * xx + s * s * yy, s * s * xx + c * c * yy, zz, c * s * (xx - yy), s * zx, c * zx
+
+
+@njit(inline="always")
+def turned_nine(c, s, xx, xz, yy, zx, zz):  # type: ignore[no-untyped-def]
+    """A τ Aᵀ of a tensor, nine numbers by rows."""
+    xy = c * s * (xx - yy)
+    return (
+        c * c * xx + s * s * yy, xy, c * xz, xy, s * s * xx + c * c * yy, s * xz, c * zx, s * zx,
+        zz,
+    )  # fmt: skip
+
+
 @njit(**EXACT)
 def list_images(
     first: int, last: int, points: Array, numbers: Whole, reach: float, close: float,
@@ -84,8 +126,8 @@ def list_images(
     """
     begin, _, end, neighbour = lists
     begins, ends, ring, row, turn = images
-    reach2, most, each = reach * reach, 0, WHOLE // 2 + 1
-    all_of_few = turn.shape[0] - WHOLE * each
+    reach2, most = reach * reach, 0
+    all_of_few = turn.shape[0] - WHOLE * (WHOLE // 2 + 1)
     for i in range(first, last):
         x, z = points[i, 0], points[i, 2]
         place, count = i * room, 0
@@ -95,11 +137,9 @@ def list_images(
             r = points[j, 0]
             n = max(numbers[i], numbers[j])
             flat = (x - r) * (x - r) + (z - points[j, 2]) * (z - points[j, 2])
-            at, turned = 3 * n, 3
-            if x < close or r < close:
-                at, turned = all_of_few + each * n, n // 2 + 1
+            at, turned = turns_of_pair(n, x < close or r < close, all_of_few)
             for k in range(1 if i == j else 0, turned):
-                if flat + 2.0 * x * r * (1.0 - turn[at + k, 0]) >= reach2:
+                if turned_square(flat, x, r, turn[at + k, 0]) >= reach2:
                     break
                 if count < room:
                     ring[place + count] = j
@@ -118,9 +158,9 @@ def pack_images(i, images, place, motion, outside, near, moves):  # type: ignore
     for k in range(count):
         j, t = images.ring[begin + k], images.row[begin + k]
         c, s = images.turn[t, 0], images.turn[t, 1]
-        near[k, 0], near[k, 1], near[k, 2] = c * place[j, 0], s * place[j, 0], place[j, 2]
+        near[k, 0], near[k, 1], near[k, 2] = turned_vector(c, s, place[j, 0], place[j, 2])
         near[k, 3] = images.turn[t, 2] * place[j, 3]
-        moves[k, 0], moves[k, 1], moves[k, 2] = c * motion[j, 0], s * motion[j, 0], motion[j, 2]
+        moves[k, 0], moves[k, 1], moves[k, 2] = turned_vector(c, s, motion[j, 0], motion[j, 2])
         moves[k, 3] = motion[j, 3]
     full = (count + PAIRS - 1) // PAIRS * PAIRS
     for k in range(count, full):
@@ -139,18 +179,17 @@ def pack_images_of_stress(i, images, stress, filling, full, tension):  # type: i
         j, t = images.ring[begin + k], images.row[begin + k]
         c, s = images.turn[t, 0], images.turn[t, 1]
         if width == 8:
-            xx, yy, zx = stress[j, 0], stress[j, 1], stress[j, 5]
-            tension[k, 0], tension[k, 1] = c * c * xx + s * s * yy, s * s * xx + c * c * yy
-            tension[k, 2], tension[k, 3] = stress[j, 2], c * s * (xx - yy)
-            tension[k, 4], tension[k, 5] = s * zx, c * zx
+            xx, yy, zz, zx = stress[j, 0], stress[j, 1], stress[j, 2], stress[j, 5]
+            six = turned_six(c, s, xx, yy, zz, zx)
+            for d in range(6):
+                tension[k, d] = six[d]
             tension[k, 6], tension[k, 7] = stress[j, 6], stress[j, 7]
         else:
             xx, xz, yy, zx = stress[j, 0], stress[j, 2], stress[j, 4], stress[j, 6]
-            tension[k, 0], tension[k, 4] = c * c * xx + s * s * yy, s * s * xx + c * c * yy
-            tension[k, 1] = tension[k, 3] = c * s * (xx - yy)
-            tension[k, 2], tension[k, 5] = c * xz, s * xz
-            tension[k, 6], tension[k, 7] = c * zx, s * zx
-            for d in range(8, 12):
+            nine = turned_nine(c, s, xx, xz, yy, zx, stress[j, 8])
+            for d in range(9):
+                tension[k, d] = nine[d]
+            for d in range(9, 12):
                 tension[k, d] = stress[j, d]
     for k in range(count, full):
         for d in range(width):
