@@ -1,9 +1,10 @@
 """Programs of a fluid: its laws, printed for the terms that a scene has, and loops over them."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from quintet.components.shared.opencl import cells
+from quintet.components.shared.opencl.kernels import kernels, named
 from quintet.components.shared.opencl.prelude import Precision
 from quintet.components.shared.opencl.program import Program
 from quintet.components.shared.opencl.types import LANES
@@ -46,16 +47,16 @@ def rows_program(
     fit = mirrored_density
     names = [
         f"#define LANES {lanes}",
-        _named(program, "pressure_term", pressure_term, 0.0, constants),
-        _named(program, "damped_pressure_term", damped_pressure_term, 0.0, 0.0, 0.0, constants),
-        _named(program, "kernel_of", kernel, 0.0, constants.smoothing),
-        _named(program, "failed", failed, 0.0, 0.0, 0.0),
-        _named(program, "kernel_in_lanes", kernel, LANES, constants.smoothing),
-        _named(program, "add_moment", fit.add_moments, TEN, 0.0, 0.0, 0.0, 0.0),
-        _named(program, "add_moments", fit.add_moments, (LANES,) * 10, *(LANES,) * 4),
-        _named(program, "mean_and_variance", fit.mean_and_variance, TEN),
-        _named(program, "solve", fit.solve, SIX, 0.0, 0.0, 0.0),
-        _named(program, "distance_to", fit.distance, VECTOR, 0.0, 0.0, 0.0),
+        named(program, "pressure_term", pressure_term, 0.0, constants),
+        named(program, "damped_pressure_term", damped_pressure_term, 0.0, 0.0, 0.0, constants),
+        named(program, "kernel_of", kernel, 0.0, constants.smoothing),
+        named(program, "failed", failed, 0.0, 0.0, 0.0),
+        named(program, "kernel_in_lanes", kernel, LANES, constants.smoothing),
+        named(program, "add_moment", fit.add_moments, TEN, 0.0, 0.0, 0.0, 0.0),
+        named(program, "add_moments", fit.add_moments, (LANES,) * 10, *(LANES,) * 4),
+        named(program, "mean_and_variance", fit.mean_and_variance, TEN),
+        named(program, "solve", fit.solve, SIX, 0.0, 0.0, 0.0),
+        named(program, "distance_to", fit.distance, VECTOR, 0.0, 0.0, 0.0),
         f"#define Moments {program.add(fit.mean_and_variance, TEN)[1].name}",
         f"#define NO_FLUID {fit.NO_FLUID!r}",
         f"#define RATE4 {'double4' if precision == 'double' else 'float4'}",
@@ -67,7 +68,7 @@ def rows_program(
 
         of_frame = (VECTOR, VECTOR, VECTOR, forces)
         names += [
-            _named(program, "frame_acceleration", frame_acceleration, *of_frame),
+            named(program, "frame_acceleration", frame_acceleration, *of_frame),
             f"#define InFrame {program.add(frame_acceleration, *of_frame)[1].name}",
         ]
         sources.append("frame")
@@ -77,11 +78,12 @@ def rows_program(
 
         place = (0.0, 0.0, 0.0, True)
         names += [
-            _named(program, "damping_strength", damping_strength, *place),
-            _named(program, "damped_share", damped_share, 0.0, 0.0, 0.0),
+            named(program, "damping_strength", damping_strength, *place),
+            named(program, "damped_share", damped_share, 0.0, 0.0, 0.0),
         ]
         sources.append("damping")
-    return "\n".join([program.text, *names, search, *_sources("lanes", *sources), more])
+    shared, of_fluid = kernels("lanes", "gather"), kernels(*sources, folder=HERE)
+    return "\n".join([program.text, *names, search, *shared, *of_fluid, more])
 
 
 def pairs_program(law: PairLaw, precision: Precision, lanes: int, apparent: bool = False) -> str:
@@ -93,10 +95,10 @@ def pairs_program(law: PairLaw, precision: Precision, lanes: int, apparent: bool
     force = ((LANES,) * 3, (LANES,) * 3, (LANES,) * 3, (LANES,) * 3, *(LANES,) * 6)
     names = [
         f"#define LANES {lanes}",
-        _named(program, "inverses", inverses, LANES, LANES, constants),
-        _named(program, "gradient", gradient, LANES, LANES, constants.smoothing),
-        _named(program, "fluid_force", add_pair_force, *force, law.fluid),
-        _named(program, "boundary_force", add_pair_force, *force, law.boundary),
+        named(program, "inverses", inverses, LANES, LANES, constants),
+        named(program, "gradient", gradient, LANES, LANES, constants.smoothing),
+        named(program, "fluid_force", add_pair_force, *force, law.fluid),
+        named(program, "boundary_force", add_pair_force, *force, law.boundary),
         f"#define FluidTerms {program.struct(law.fluid)}",
         f"#define BoundaryTerms {program.struct(law.boundary)}",
     ]
@@ -108,18 +110,8 @@ def pairs_program(law: PairLaw, precision: Precision, lanes: int, apparent: bool
         names.append("#define DAMPER")
     if law.fluid.xsph is not None:
         weight = (LANES, constants.smoothing)
-        names += ["#define XSPH", _named(program, "kernel_of", kernel, *weight)]
+        names += ["#define XSPH", named(program, "kernel_of", kernel, *weight)]
     if law.fluid.diffusion.on is not None:
         flux = (*(LANES,) * 4, law.fluid.diffusion)
-        names += ["#define DIFFUSION", _named(program, "diffusive_flux", diffusive_flux, *flux)]
-    return "\n".join([program.text, *names, *_sources("lanes", "pairs")])
-
-
-def _sources(*names: str) -> list[str]:
-    """Kernels, of files beside this one."""
-    return [(HERE / f"{name}.cl").read_text() for name in names]
-
-
-def _named(program: Program, name: str, law: Any, *arguments: Any) -> str:
-    """Print a law, and let kernels call it by a name."""
-    return f"#define {name} {program.add(law, *arguments)[0]}"
+        names += ["#define DIFFUSION", named(program, "diffusive_flux", diffusive_flux, *flux)]
+    return "\n".join([program.text, *names, *kernels("lanes"), *kernels("pairs", folder=HERE)])

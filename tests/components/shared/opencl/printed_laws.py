@@ -1,5 +1,6 @@
 """Run a law on random arguments twice: compiled by numba, and printed for an OpenCL device."""
 
+import dis
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from types import FunctionType
@@ -96,12 +97,16 @@ def compile_law(law: Any) -> Any:
     """Compile a law and the laws that it calls by numba; no sum is reordered."""
     python = getattr(law, "py_func", law)
     if python not in _compiled:
-        names = python.__code__.co_names
+        # Names of fields are no globals, even if a law has the same name.
+        names = {
+            instruction.argval
+            for instruction in dis.get_instructions(python)
+            if instruction.opname == "LOAD_GLOBAL"
+        }
         laws = {
             name: compile_law(python.__globals__[name])
             for name in names
             if isinstance(python.__globals__.get(name), Dispatcher)
-            and python.__globals__[name].py_func is not python  # a field may have its name
         }
         strict = FunctionType(
             python.__code__, {**python.__globals__, **laws}, closure=python.__closure__

@@ -103,6 +103,16 @@ def loops(a):
     return s
 
 
+def ends_early(a):
+    s = 0.0
+    for i in range(9):
+        s = s * a + i
+        if s > 5.0:
+            break
+        s += 1.0
+    return s
+
+
 @njit(error_model="numpy")
 def last(r):
     """Return the last of three numbers, and the count."""
@@ -166,6 +176,7 @@ LAWS = [
     Law(conditional, (ANY, ANY)),
     Law(swapped, (ANY, ANY)),
     Law(loops, (ANY,)),
+    Law(ends_early, (ANY,)),
     Law(last, (vector(1.0),)),
     Law(turned, (vector(1.0), Between(0.0, 2.0))),
     Law(reads_records, (Outer(Inner(True, ANY), 3), ANY), name=" that are on"),

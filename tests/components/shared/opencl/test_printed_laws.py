@@ -49,6 +49,8 @@ from quintet.components.sph_fluid.integration.kernels import failed
 from quintet.components.sph_fluid.motion import laws as motion
 from quintet.components.sph_fluid.waves import laws as waves
 from quintet.components.sph_solid import laws as solid
+from quintet.components.sph_solid.kernels import azimuthal_images as images
+from quintet.components.sph_solid.kernels import point, sums
 
 ANY, PART, LARGE = Between(-1.0, 1.0), Between(0.01, 1.0), Between(0.5, 2.0)
 SIX, NINE, TEN = (ANY,) * 6, (ANY,) * 9, (PART,) * 10
@@ -68,10 +70,19 @@ LAPLACIAN, STRESS, NONE = (
 TERMS = fluid.PairTerms(0.5, NONE, DIFFUSION, REPULSION._replace(on=None), CONTACT, None, None)
 PAIR = (*(vector(1.0),) * 4, NEAR, ANY, ANY, ANY, PART, PART)
 SOLID = solid.PairLaw(WENDLAND, 9e-6, 1.0, 2.0, 1.0, True, 0.3, 1e-5)
+PLAIN = SOLID._replace(artificial=None)
 METAL = Solid(
     2700.0, 27e9, 77e9, True, 2.9e7, 1.34, 0.1, 0.0, 2.0, 0.5, 3e8, 4e8, 0.34, 0.01, 1.7, 1.0,
     300.0, 600.0, 1e-7, -1e9, 0.5, 0.1, 0.2, -1.5, 0.01, 0.5, 300.0, 900.0, -1.0, 0.01, None,
 )  # fmt: skip
+BRITTLE = METAL._replace(shocks=False, spall=5e8, failure_strain=1.0)
+PAIR_OF_SOLID = ((ANY,) * 4, vector(1.0), vector(1.0), ANY, ANY, NINE, PART, vector(1.0))
+PULL = Between(-5e8, 5e8)  # Pa
+POINT = point.Point(
+    (PULL,) * 6, Between(0.95, 1.1), PULL, Between(0.0, 1e5), PART, Between(300.0, 800.0),
+    PART, 0.0,
+)  # fmt: skip
+RATE = ((Between(-1e5, 1e5),) * 9, (Between(-1e5, 1e5),) * 9, Between(-1e-3, 1e-3))
 STRAINED = (Between(-0.1, 0.3), Between(0.0, 1e5), Between(1e6, 1e9), METAL)
 PLACES = (1.0, 1.2, 1.4, 1.6, 1.7, 2.0, 2.2)
 ROOTS = SevenRoots(1.5, 10.0, PLACES, 1.0, (1.0,) * 3, 1.8, 5.0, 2.0, None, None)
@@ -131,15 +142,37 @@ LAWS = [
     Law(solid.viscous_pressure, (PART, DENSITY, PART, DENSITY, SOLID)),
     Law(solid.nearness, (NEAR, SOLID)),
     Law(solid.inverse, (SIX, SOLID)),
+    Law(solid.add_outer, (NINE, vector(1.0), vector(1.0))),
+    Law(solid.add_moments, (SIX, vector(1.0), vector(1.0))),
+    Law(solid.add_force, (*PAIR_OF_SOLID, SOLID)),
+    Law(solid.add_force, (*PAIR_OF_SOLID, PLAIN), name=" of stresses alone"),
+    Law(solid.stable_step, (LARGE, PART, SOLID)),
+    Law(sums.corrected, (NINE, SIX, True, SOLID)),
+    Law(point.rates, (NINE, (LARGE, LARGE), ANY, PART)),
+    Law(point.corrected_scales, (PART, ANY, PART)),
+    Law(point.plain_scales, (LARGE, ANY, PART)),
+    Law(point.advanced, (POINT, RATE, LARGE, 1e-8, METAL)),
+    Law(point.advanced, (POINT, RATE, LARGE, 1e-8, BRITTLE), ulp=4, name=" that is brittle"),
+    Law(point.sound_speed, (POINT, METAL)),
+    Law(point.divided_stress, (SIX, ANY, PART)),
+    Law(point.corrected_stress, (SIX, PART, SIX)),
+    Law(images.turns_of_pair, (7, True, 40)),
+    Law(images.turned_square, (PART, PART, PART, ANY)),
+    Law(images.turned_vector, (ANY, ANY, ANY, ANY)),
+    Law(images.turned_six, SIX),
+    Law(images.turned_nine, (ANY,) * 7),
     Law(solid.times, (NINE, SIX)),
     Law(state.reference_pressure, (STRAINED[0], METAL)),
     Law(state.fractions, (STRAINED[0], METAL)),
     Law(state.pressure_and_energy, (STRAINED[0], STRAINED[1], Between(-1e-5, 1e-5), METAL)),
     Law(state.sound_speed_squared, STRAINED),
+    Law(state.place_in_table, (STRAINED[0], 513, METAL)),
+    Law(state.temperature_between, (*STRAINED[:2], PART, (ANY, ANY), (ANY, ANY), METAL)),
     Law(strength.turned_and_strained, (SIX, NINE, LARGE, PART)),
     Law(strength.equivalent, (SIX,)),
     Law(strength.softening, (Between(200.0, 1000.0), METAL)),
     Law(strength.flow_stress, (PART, Between(0.1, 1e4, True), PART, METAL)),
+    Law(strength.returned, ((PULL,) * 6, PART, Between(200.0, 800.0), 1e-6, METAL)),
     Law(fracture.greatest_principal, (SIX, ANY), ulp=2, cancels=True),
     Law(fracture.is_torn, (SIX, ANY, PART)),
     Law(fracture.damage_growth, (SIX, ANY, PART, Between(200.0, 800.0), PART, METAL), ulp=4),
@@ -213,7 +246,10 @@ NOT_PURE = {
 
 
 # Solvers that compute on devices today; the laws of others are tried before a release.
-ON_DEVICES = ("sph_fluid", "particle_dynamics", "shared.smoothing", "shared.search")
+ON_DEVICES = (
+    "sph_fluid", "sph_solid", "meshless_gas", "particle_dynamics", "shared.smoothing",
+    "shared.search", "shared.materials",
+)  # fmt: skip
 
 
 def solver(law):
