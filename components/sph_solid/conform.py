@@ -88,4 +88,50 @@ def cases() -> tuple[ConformCase, ...]:
             smooth=False,  # a velocity that jumps is a force without end
             activity={"glue_activity.active": ("glued", "glued_load")},
         ),
+        *on_devices(moving, layers, rest),
+    )
+
+
+def on_devices(
+    moving: dict[str, Any], layers: dict[str, Any], rest: dict[str, Any]
+) -> tuple[ConformCase, ...]:
+    """Blocks on a device, where there is one: at rest, in quarters, rings, struck, and glued."""
+    # Loads pyopencl where it is installed; these cases alone ask for it.
+    from quintet.components.shared.opencl.devices import is_any_there
+
+    if not is_any_there():
+        return ()
+    (still,) = BLOCK["bodies"]
+    planes = [{"axis": "y"}, {"axis": "z"}]
+    return (
+        ConformCase(
+            "quarter, corrected, OpenCL",
+            {**BLOCK, "symmetry": planes, "kernel_correction": True},
+            dt=STEP,
+            device="opencl",
+        ),
+        ConformCase(
+            "rings, OpenCL",
+            {**BLOCK, "dimensions": 2, "axisymmetric": True},
+            dt=STEP,
+            device="opencl",
+        ),
+        ConformCase(
+            "striking block, OpenCL",
+            {**BLOCK, "bodies": [still, moving]},
+            dt=STEP,
+            still=False,
+            smooth=False,  # it begins to yield
+            device="opencl",
+        ),
+        ConformCase(
+            "glued block, OpenCL",
+            {**BLOCK, "glued": [layers]},
+            rest=rest,
+            scale={"glued.velocity": 10.0},
+            dt=STEP,
+            smooth=False,  # a velocity that jumps is a force without end
+            activity={"glue_activity.active": ("glued", "glued_load")},
+            device="opencl",
+        ),
     )

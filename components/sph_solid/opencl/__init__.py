@@ -1,0 +1,1 @@
+"""The steps of bodies of particles on OpenCL devices."""

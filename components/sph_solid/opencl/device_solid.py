@@ -1,0 +1,188 @@
+"""Bodies of particles as a component whose steps run on an OpenCL device.
+
+An `SphSolid` on the host makes the particles, and reads gauges, totals, views, checks and
+snapshots: rows are copied into its state before. Between these a step brings back eight numbers,
+and the forces on glued particles.
+"""
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+from quintet.components.shared.opencl.devices import device_of
+from quintet.components.sph_solid import MANIFEST
+from quintet.components.sph_solid.component import LOAD, SphSolid
+from quintet.components.sph_solid.diagnostics import failure
+from quintet.components.sph_solid.glue import add_work
+from quintet.components.sph_solid.judgement import ENERGY_EVERY
+from quintet.components.sph_solid.opencl.refusal import refuse_what_needs_the_processor
+from quintet.components.sph_solid.opencl.stepping import Stepping
+from quintet.components.sph_solid.pair_sums import CurrentSums
+from quintet.components.sph_solid.params import SphSolidParams
+from quintet.components.sph_solid.ports import SHOWS
+from quintet.components.sph_solid.ranks.one import OneRank
+from quintet.interfaces.component import Component, Fields, Keys, Resources, Totals
+from quintet.interfaces.errors import SceneError
+
+FIRST_DEVICE = Resources(device="opencl")
+FORCES = frozenset({LOAD})  # known on the host after each step
+
+
+class DeviceSolid(Component):
+    """Elastic-plastic bodies of particles, and what of them is glued to a mesh, on a device."""
+
+    Params: type[SphSolidParams] = SphSolidParams
+    manifest = MANIFEST
+    shows = SHOWS
+    compiles = True
+
+    def __init__(self, params: SphSolidParams, resources: Resources = FIRST_DEVICE) -> None:
+        refuse_what_needs_the_processor(params, resources.device)
+        device = device_of(resources.device)
+        if not device.has_doubles:
+            raise SceneError(
+                f"device {resources.device}: it must compute in double precision; {device.name} "
+                "does not. Choose another of those that `quintet devices` lists."
+            )
+        self.params, (self.takes, self.gives) = params, self.ports_of(params)
+        self.host = SphSolid(params, replace(resources, device="cpu"))
+        self._refuse_other_parts(resources.device)
+        host, threads = self.host, resources.threads
+        laws = host.materials.laws
+        self.stepping = Stepping(device, threads, host.law, laws, host.lists, params.gravity)
+        self._put()
+
+    def _refuse_other_parts(self, device: str) -> None:
+        """Refuse parts that a step on the processor calls, and one on a device does not."""
+        host = self.host
+        pairs = ((host.sums, CurrentSums), (host.all_ranks, OneRank))
+        other_parts = [
+            type(part).__name__ for part, expected in pairs if type(part) is not expected
+        ]
+        if other_parts:
+            raise SceneError(
+                f"on device {device}, bodies must have no parts that the processor alone "
+                f'computes; found {", ".join(other_parts)}. Set device = "cpu".'
+            )
+
+    def describe(self) -> Fields:
+        """Return positions and masses of glued particles."""
+        self._get()
+        return self.host.describe()
+
+    def bind(self, static: Fields, joined: Keys) -> None:
+        """Take down whether a mesh carries the glued particles."""
+        self.host.bind(static, joined)
+
+    def stable_dt(self) -> float:
+        """Return the share `courant` of the smallest stable step of all particles."""
+        return self.host.stable_dt()
+
+    def take(self, fields: Fields) -> None:
+        """Set which particles are still glued, and their velocities in the coming step."""
+        state = self.host.state
+        if not len(state.active):
+            return
+        if (fields.get("glue_activity.active", state.active) < state.active).any():
+            self._get()  # what is released brings its motion
+        self.host.take(fields)
+        self.stepping.rows.put_glue(state)
+
+    def step(self, dt: float) -> None:
+        """Advance by exactly dt [s]; stresses follow the motion in the step's middle."""
+        host, state, stepping = self.host, self.host.state, self.stepping
+        if state.steps % ENERGY_EVERY == 0:
+            self._get()
+            mass, gravity = host.materials.mass(state), self.params.gravity
+            host.judge.note(state, mass, host.sums, gravity, host.all_ranks, None)
+        add_work(state, dt)
+        self._is_read = False
+        spread = host.lists.spread(*stepping.kick(dt))
+        if stepping.may_miss(state, spread, dt):
+            self._search(dt)
+        end = stepping.finish(dt)
+        state.bound = end.bound
+        if len(state.active):
+            state.force[:] = stepping.rows.force.get()
+        state.time += dt
+        state.steps += 1
+        add_work(state, dt)
+        if end.failed:
+            raise self._failure(dt)
+
+    def _search(self, dt: float) -> None:
+        """Sort particles by their places in the middle of a step of dt [s], and list neighbours."""
+        rows, lists, state = self.stepping.rows, self.host.lists, self.host.state
+        rows.reflect(dt)
+        low, high, _ = rows.extremes_of(rows.motion)
+        spread = dt * lists.spread(low, high)
+        if lists.is_unstable(spread) or rows.extremes_of(rows.place)[2]:
+            raise self._failure(dt)
+        lists.widen(state, spread)
+        rows.sort(state)
+
+    def _failure(self, dt: float) -> Exception:
+        """Say which particle a step of dt [s] failed on."""
+        self._get()
+        return failure(self.host.state, self.params, dt, self.host.all_ranks)
+
+    def _put(self) -> None:
+        """Copy the host's state to the device."""
+        self.stepping.rows.put(self.host.state)
+        self._is_read = True
+
+    def _get(self) -> None:
+        """Copy the particles into the host's state, unless they are there."""
+        if not self._is_read:
+            self.stepping.rows.get(self.host.state)
+            self._is_read = True
+
+    def check(self) -> None:
+        """Refuse a particle whose energy, strain, temperature or damage is not finite."""
+        if self._is_read or not self.stepping.rows.is_finite():
+            self._get()
+            self.host.check()
+
+    def warnings(self) -> Mapping[str, str]:
+        """Reasons why the results may be wrong: energy that appears, numerical fracture."""
+        self._get()
+        return self.host.warnings()
+
+    def notes(self) -> tuple[str, ...]:
+        """Settings that would be better for a slow impact."""
+        return self.host.notes()
+
+    def give(self, wanted: Keys) -> Fields:
+        """Copy out forces on glued particles, and readings of bodies, gauges and levels."""
+        if not wanted <= FORCES:
+            self._get()
+        return self.host.give(wanted)
+
+    def save(self) -> Fields:
+        """Copy out all state, as bodies on the processor have it."""
+        self._get()
+        return self.host.save()
+
+    def load(self, state: Fields) -> None:
+        """Restore a saved state, of bodies on the processor or on a device."""
+        self.host.load(state)
+        self._put()
+
+    def begin_from(self, state: Fields) -> None:
+        """Begin from the state of another run of the same particles; judge from here on."""
+        self._get()
+        self.host.begin_from(state)
+        self._put()
+
+    def totals(self) -> Totals:
+        """Mass, momentum and energies, without the motion of particles that a mesh carries."""
+        self._get()
+        return self.host.totals()
+
+    def view(self) -> Fields:
+        """Particles in the order of their birth, with stress, strain and damage."""
+        self._get()
+        return self.host.view()
+
+    def items(self) -> int:
+        """Count the particles."""
+        return self.host.items()

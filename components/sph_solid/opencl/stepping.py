@@ -1,0 +1,156 @@
+"""Steps of bodies on a device: motion, materials, sums over pairs, and whether lists still hold."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from quintet.components.shared.materials.solid import Solid
+from quintet.components.shared.opencl.arrays import DeviceArray, run
+from quintet.components.shared.opencl.devices import Device, build
+from quintet.components.shared.opencl.sums import Sums
+from quintet.components.shared.opencl.types import bytes_of
+from quintet.components.sph_solid.laws import PairLaw
+from quintet.components.sph_solid.neighbours import FEW, SolidLists
+from quintet.components.sph_solid.opencl.device_state import DeviceState
+from quintet.components.sph_solid.opencl.programs import source, width
+from quintet.components.sph_solid.state import Array, State
+from quintet.interfaces.params import Vector
+
+LANES_OF_PROCESSORS = 4  # doubles in one of its vectors; other devices make lanes of rows
+ADVANCED = (
+    "heating", "deviator", "density_ratio", "pressure", "energy", "strain", "temperature", "damage",
+    "failed", "sound", "position", "velocity", "acceleration",
+)  # fmt: skip
+
+
+class StepEnd(NamedTuple):
+    """What a step finds at its end."""
+
+    bound: float  # s, stable step of all particles
+    failed: bool  # whether a velocity is not finite
+
+
+class Stepping:
+    """Steps of one solid.
+
+    Parameters
+    ----------
+    device : Device
+    threads : int
+        Of the processor, where it is the device.
+    law : PairLaw
+    materials : list of Solid
+    lists : SolidLists
+        Of the host: planes of symmetry, and how far pairs act.
+    gravity : Vector, m/s2
+    """
+
+    def __init__(
+        self, device: Device, threads: int, law: PairLaw, materials: list[Solid],
+        lists: SolidLists, gravity: Vector,
+    ) -> None:  # fmt: skip
+        self.queue, self.lists = device.queue(threads), lists
+        lanes = LANES_OF_PROCESSORS if device.is_processor else 1
+        kernels = build(self.queue, source(law, materials[0], lanes, lists.is_axisymmetric))
+        self.rows = DeviceState(
+            self.queue, kernels, lists.images.planes, lists.mirrors, width(law),
+            device.is_processor, law.smoothing.length if lists.is_axisymmetric else 0.0,
+        )  # fmt: skip
+        self._sums = Sums(self.queue, kernels, device.is_processor)
+        self._kick, self._finish, self._advance = kernels.kick, kernels.finish, kernels.advance
+        self._gradients, self._accelerations = kernels.velocity_gradients, kernels.accelerations
+        self._displacements, self._mark_fast = kernels.displacements, kernels.mark_fast
+        self._meet_few = kernels.meet_few
+        self._law, self._gravity = bytes_of(law, np.float64), np.array([*gravity, 0.0])
+        self._laws, self._tables, self._table_start = self._of_materials(materials)
+        corners = [(plane.axis, plane.position, plane.inward, 0.0) for plane in lists.mirrors]
+        self._planes = DeviceArray.of(self.queue, np.array(corners).reshape(-1, 4))
+
+    def _of_materials(self, materials: list[Solid]) -> tuple[DeviceArray, ...]:
+        """Numbers of the materials, tables of their isentropes, and where each of these starts."""
+        tables = [law.isentrope for law in materials]
+        numbers = np.array([
+            bytes_of(law._replace(isentrope=None), np.float64)  # type: ignore[arg-type]
+            for law in materials
+        ])  # fmt: skip
+        start = np.cumsum([0, *map(len, tables)]).astype(np.int32)
+        arrays = (numbers, np.concatenate(tables), start)
+        return tuple(DeviceArray.of(self.queue, array) for array in arrays)
+
+    def kick(self, dt: float) -> tuple[Array, Array]:
+        """Bring velocities and places to the middle of a step of dt [s].
+
+        Return the least and greatest (3,) m by which particles will have moved at its end.
+        """
+        rows, arrays = self.rows, self.rows.arrays
+        names = ("position", "velocity", "acceleration", "failed", "volume")
+        run(
+            self.queue, self._kick, rows.count, np.int32(rows.count), np.float64(dt),
+            arrays["glue"], rows.active, rows.pulled, *(arrays[name] for name in names),
+            rows.reference, rows.place, rows.motion, rows.most, rows.least,
+        )  # fmt: skip
+        low, high = rows.ends()
+        return low, high[:3]
+
+    def may_miss(self, state: State, spread: float, dt: float) -> bool:
+        """Whether the lists may lack a pair that acts in a step; as `SolidLists.may_miss`."""
+        skin = state.reach - self.lists.support
+        if spread <= skin:
+            return False
+        rows, arrays, count = self.rows, self.rows.arrays, np.int32(self.rows.count)
+        position, velocity = arrays["position"], arrays["velocity"]
+        moved = rows.most, rows.least
+        run(
+            self.queue, self._displacements, rows.count, count, np.float64(dt), rows.place,
+            position, velocity, rows.reference, *moved,
+        )  # fmt: skip
+        means = np.zeros((2, 4))
+        if not self.lists.mirrors:
+            means = np.array([self._sums.of(array, rows.count) for array in moved]) / rows.count
+        marks = DeviceArray(self.queue, (rows.count,), np.uint8)
+        limit = np.float64(0.25 * skin * skin)
+        run(self.queue, self._mark_fast, rows.count, count, *means, limit, *moved, marks)
+        fast = np.flatnonzero(marks.get())
+        if not 0 < len(fast) <= FEW:
+            return len(fast) > FEW
+        run(
+            self.queue, self._meet_few, rows.count, count, np.int32(len(fast)),
+            DeviceArray.of(self.queue, fast.astype(np.int32)), np.int32(len(self.lists.mirrors)),
+            self._planes, np.float64(self.lists.support), np.float64(skin), np.float64(dt),
+            rows.place, position, velocity, rows.reference, rows.extremes,
+        )  # fmt: skip
+        return bool(rows.cells.greatest(rows.extremes, rows.count)[0] > 0.0)
+
+    def finish(self, dt: float) -> StepEnd:
+        """Advance materials by dt [s], with places and velocities in its middle; end the step."""
+        rows, arrays, count = self.rows, self.rows.arrays, np.int32(self.rows.count)
+        lists, duration = rows.lists, np.float64(dt)
+        near = (
+            lists.near, lists.end, lists.row_stride, lists.item_stride, rows.turn, rows.turns,
+            self._law,
+        )  # fmt: skip
+        places = rows.place, rows.motion
+        rows.images.write_rows(*places, rows.count)
+        run(
+            self.queue, self._gradients, rows.count, count, *places, *near, rows.gradient,
+            rows.correction,
+        )  # fmt: skip
+        run(
+            self.queue, self._advance, rows.count, count, duration, self._laws, self._tables,
+            self._table_start, arrays["material"], rows.gradient, rows.correction,
+            *(arrays[name] for name in ADVANCED), *places, rows.stress,
+        )  # fmt: skip
+        rows.images.write_rows(*places, rows.count)
+        rows.images.write_stresses(rows.stress, rows.count)
+        acceleration, heating = arrays["acceleration"], arrays["heating"]
+        run(
+            self.queue, self._accelerations, rows.count, count, *places, rows.stress, *near,
+            acceleration, heating, rows.extremes,
+        )  # fmt: skip
+        run(
+            self.queue, self._finish, rows.count, count, duration, self._gravity, self._laws,
+            arrays["material"], arrays["volume"], arrays["fixed"], arrays["glue"], rows.active,
+            rows.force, arrays["velocity"], acceleration, heating, arrays["energy"], rows.extremes,
+        )  # fmt: skip
+        bound, failed = rows.cells.greatest(rows.extremes, rows.count)[:2]
+        return StepEnd(-float(bound), bool(failed > 0.0))
