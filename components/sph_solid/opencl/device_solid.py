@@ -143,8 +143,7 @@ class DeviceSolid(Component):
             self.host.check()
 
     def warnings(self) -> Mapping[str, str]:
-        """Reasons why the results may be wrong: energy that appears, numerical fracture."""
-        self._get()
+        """Reasons why the results may be wrong, as of the last step that they were judged at."""
         return self.host.warnings()
 
     def notes(self) -> tuple[str, ...]:

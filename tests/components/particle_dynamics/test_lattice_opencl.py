@@ -189,7 +189,8 @@ def test_every_key_of_a_lattice_is_supported_or_limited():
 
 def test_several_ranks_on_a_device_are_refused():
     settings = ["components.bar.device='opencl'", "components.bar.ranks=2"]
-    with pytest.raises(SceneError, match=r"ranks must be 1 on a device; found 2 and opencl"):
+    words = r"ranks must be 1 of kind particle_lattice on a device; found 2 and opencl"
+    with pytest.raises(SceneError, match=words):
         load("hot_bar", settings=settings)
 
 
