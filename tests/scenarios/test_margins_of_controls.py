@@ -12,10 +12,6 @@ from quintet.coupler.scene.read import library
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
 TABLE = re.compile(r"<!-- controls -->\n(.*?)\n<!-- end of controls -->", re.DOTALL)
-# Their controls are stated but have not been run yet; scenarios/README.md has the command.
-NOT_RUN = {
-    "dam_break_cubes",
-}
 
 
 @pytest.fixture(scope="module")
@@ -31,9 +27,8 @@ def test_every_expectation_has_a_control_that_its_tolerance_rejects(scenes, name
     expected = {expectation["name"]: expectation for expectation in scene["expect"]}
     controls = {(c["name"], rejected) for c in scene["control"] for rejected in c["rejects"]}
     assert {rejected for _, rejected in controls} == set(expected)
-    assert (name in scenes) != (name in NOT_RUN)
-    rows = scenes.get(name, [])
-    assert {(row["control"], row["expectation"]) for row in rows} in (controls, set())
+    rows = scenes[name]
+    assert {(row["control"], row["expectation"]) for row in rows} == controls
     for row in rows:
         expectation = expected[row["expectation"]]
         assert row["verdict"] == "rejected" and row["within"] == expectation["within"], row

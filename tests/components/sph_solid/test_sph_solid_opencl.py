@@ -29,7 +29,7 @@ from quintet.interfaces.component import Resources
 from quintet.interfaces.errors import SceneError, StepError
 
 pytest.importorskip("pyopencl")
-from quintet.components.shared.opencl.devices import Device
+from quintet.components.shared.opencl.devices import Device, is_accelerator_there
 from quintet.components.sph_solid.opencl import device_solid, stepping
 from quintet.components.sph_solid.opencl.device_solid import DeviceSolid
 from quintet.components.sph_solid.opencl.refusal import (
@@ -77,6 +77,7 @@ def test_rings_are_those_of_the_processor(table):
     assert processor.state.strain.max() > 0.1
 
 
+@pytest.mark.skipif(is_accelerator_there(), reason="lists by rows are for processors")
 @pytest.mark.parametrize("table", [FAST, CORRECTED, RINGS])
 def test_lists_by_columns_give_the_bits_of_lists_by_rows(table, monkeypatch):
     monkeypatch.setattr(stepping, "LANES_OF_PROCESSORS", 1)
