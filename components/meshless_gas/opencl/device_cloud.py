@@ -10,7 +10,7 @@ INDEX = np.int32  # of a node
 
 
 class DeviceCloud:
-    """What is known of the nodes before the first step.
+    """Arrays of a fixed cloud; no step changes them.
 
     Parameters
     ----------

@@ -61,7 +61,7 @@ class DeviceGas(Component):
         self._put()
 
     def _refuse_other_parts(self, device: str) -> None:
-        """Refuse parts that a step on the processor calls, and one on a device does not."""
+        """Refuse parts that only a step on the processor calls."""
         host = self.host
         known = (FixedNodes, WallFriction)
         names = [

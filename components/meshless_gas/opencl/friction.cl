@@ -44,7 +44,8 @@ __kernel void write_ghost_slopes(
     const int g = get_global_id(0), i = nodes + g;
     if (i >= whole) return;
     const Vector slope_of_owner = vector_at(slopes, owner[g], whole);
-    const double3 slope = turned(turn, g, (double3)(slope_of_owner.f0, slope_of_owner.f1, slope_of_owner.f2));
+    const double3 slope = turned(
+        turn, g, (double3)(slope_of_owner.f0, slope_of_owner.f1, slope_of_owner.f2));
     slopes[AT(i, 0, 3, whole)] = slope.x;
     slopes[AT(i, 1, 3, whole)] = slope.y;
     slopes[AT(i, 2, 3, whole)] = slope.z;

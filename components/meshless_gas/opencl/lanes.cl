@@ -1,5 +1,5 @@
-/* LANES nodes go side by side, each lane by itself: compilers of processors make no vectors of loops
-   over them by themselves. j is a node of each lane; after the last node lanes repeat it. */
+/* LANES nodes go side by side, each lane by itself: compilers of processors make no vectors of
+   loops over them by themselves. j is a node of each lane; after the last node lanes repeat it. */
 
 #if LANES == 4
 #define NODES_OF(name, node) \

@@ -36,6 +36,8 @@ class DeviceParticles:
     def add_rates(self, dt: float, stage: Stage) -> None:
         """Exchange momentum and heat in a stage of a step [s]."""
         work, state, tables = self.work, self.state, self.state.tables
+        if (state.wrong.get() >= 0).any():
+            return  # the step fails: loads of the last valid stage are left
         work.primitive[:] = tables.get(state.primitive)
         work.residual[:] = 0.0
         self.particles.add_rates(self.domain, work, dt, stage)

@@ -58,8 +58,8 @@ def _structs(program: Program, limiter: Limiter) -> list[str]:
         "Limiter": limiter, "PairOfLanes": (LANES,) * 2, "Thresholds": (LANES,) * 3,
         "Directions": (LANES,) * 4, "States": STATES,
     }  # fmt: skip
-    named = {name: program.struct(example) for name, example in structs.items()}
-    return [f"#define {name} {struct}" for name, struct in named.items() if name != struct]
+    named_structs = {name: program.struct(example) for name, example in structs.items()}
+    return [f"#define {name} {struct}" for name, struct in named_structs.items() if name != struct]
 
 
 def _laws(program: Program, limiter: Limiter) -> list[str]:

@@ -21,12 +21,12 @@ if TYPE_CHECKING:
 
 
 class Outcome(NamedTuple):
-    """What a step returns."""
+    """Results of a step."""
 
     flows: Array  # (3, 5) kg/s, N, W, through the boundary after each stage
     shortest: float  # s, stable for all nodes at a Courant number of 1
     change: float  # 1, root mean square of the densities' relative change
-    wrong: int  # row, among nodes that are advanced, of a state that is none; -1: all are
+    wrong: int  # row, among nodes that are advanced, whose state is not positive and finite; or -1
 
 
 class Stepping:

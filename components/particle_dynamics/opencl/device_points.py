@@ -12,7 +12,7 @@ from quintet.components.shared.opencl.arrays import DeviceArray
 from quintet.interfaces.component import Array
 
 PADDED = ("position", "velocity", "acceleration", "listed")  # with a fourth component of 0
-# Arrays of `State` that a device changes; others are the host's.
+# Arrays of `State` that have a copy on the device; the host alone changes `listed`.
 ON_DEVICE = (
     "position", "velocity", "acceleration", "listed", "kinetic", "heat", "lost", "dissipated",
     "energies", "generator",
@@ -60,6 +60,7 @@ class DevicePoints:
         velocity = self.arrays["velocity"]
         self.predicted = DeviceArray(queue, velocity.shape) if is_damped else velocity
         self.extremes = DeviceArray(queue, (self.count, 4))
+        self.extremes.clear()
 
     def _of(self, array: Array) -> DeviceArray:
         return DeviceArray.of(self.queue, array)

@@ -1,8 +1,8 @@
 """All points of a lattice on an OpenCL device, in the place of `ranks/one.py`.
 
-The host's points make the start and neighbour lists, and answer what holds for all: arrays are
-copied into their state before, each when it is first read after a step. Between these a step
-brings back how far points have moved.
+The host's points make the start and the neighbour lists, and compute outputs. An array is copied
+into their state when it is first read after a step. While stepping, only the largest displacement
+and speed are copied back.
 """
 
 import math
@@ -102,6 +102,7 @@ class DeviceRows:
         return done
 
     def _advance(self, steps: int, dt: float) -> int:
+        """Advance; that points moved too far is noticed up to MOST_AT_ONCE steps later."""
         done = 0
         while done < steps:
             ahead = min(self._unchecked_steps(dt), steps - done)
@@ -109,6 +110,7 @@ class DeviceRows:
                 self._step(dt)
             done += ahead
             square, speed2 = self._cells.greatest(self.points.extremes, self.points.count)[:2]
+            self.points.extremes.clear()
             self._moved, self._speed = math.sqrt(square), math.sqrt(speed2)
             if not slack(self.skin, self._moved) > 0.0:
                 return -1
@@ -119,11 +121,14 @@ class DeviceRows:
     def _unchecked_steps(self, dt: float) -> int:
         """Steps that may be made at once: lists hold even if the fastest point gets twice as fast.
 
+        A driven point gets faster than that from where it turns: its greatest speed counts.
+
         What a step brings back is waited for, which takes as long as the steps of some thousand
         points.
         """
         left = 0.5 * EARLY * self.skin - self._moved  # m, as `slack` has it
-        way = 2.0 * self._speed * dt
+        driven = self.model.driven
+        way = 2.0 * max(self._speed, abs(driven.amplitude * driven.frequency)) * dt
         return max(int(min(left / way, MOST_AT_ONCE)), 1) if way > 0.0 else MOST_AT_ONCE
 
     def _step(self, dt: float) -> None:

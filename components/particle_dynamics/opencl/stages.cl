@@ -74,8 +74,9 @@ __kernel void place(
     constrain(driven, motion, position, velocity);
 }
 
-/* Average the kinetic energy of a point at the end of a step; write the squares of how far it went
-   since lists were made, infinity if its velocity is not finite, and of its speed. */
+/* Average the kinetic energy of a point at the end of a step; keep the greatest squares, since the
+   host read them, of how far it was from where it was listed, infinity if its velocity is not
+   finite, and of its speed. */
 static void measure(
     int i, double weight, double mass, __global const double4 *position,
     __global const double4 *velocity, __global const double4 *listed, __global double *kinetic,
@@ -84,8 +85,9 @@ static void measure(
     const double4 u = velocity[i], d = position[i] - listed[i];
     const double square = u.x * u.x + u.y * u.y + u.z * u.z;
     kinetic[i] += weight * 0.5 * mass * square;
-    const double moved = d.x * d.x + d.y * d.y + d.z * d.z;
-    extremes[i] = (double4)(isfinite(square) ? moved : INFINITY, square, 0, 0);
+    const double moved = isfinite(square) ? d.x * d.x + d.y * d.y + d.z * d.z : INFINITY;
+    const double4 greatest = extremes[i];
+    extremes[i] = (double4)(max_real(greatest.x, moved), max_real(greatest.y, square), 0, 0);
 }
 
 /* Compute the forces and kick. The list of a point has those of lower number that list it, until

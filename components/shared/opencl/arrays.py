@@ -46,6 +46,13 @@ class DeviceArray:
             contiguous = np.ascontiguousarray(array, self.dtype)
             opencl().enqueue_copy(self.queue, self.memory, contiguous, is_blocking=True)
 
+    def clear(self) -> None:
+        """Write 0 everywhere."""
+        size = int(np.prod(self.shape)) * self.dtype.itemsize
+        if size:
+            zero = np.zeros(1, self.dtype)
+            opencl().enqueue_fill_buffer(self.queue, self.memory, zero, 0, size)
+
     def get(self, first: int = 0) -> NDArray[Any]:
         """Read the rows of the array, from the first one on."""
         array: NDArray[Any] = np.empty((self.shape[0] - first, *self.shape[1:]), self.dtype)

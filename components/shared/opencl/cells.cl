@@ -17,7 +17,7 @@ __kernel void number_rows(
     key[k] = (cell << 32) | (first + k);
 }
 
-/* Order two of the keys of a bitonic sort: rising, unless bit `size` of the first one's row is set. */
+/* Order two keys of a bitonic sort: rising, unless bit `size` of the first one's row is set. */
 #define IN_ORDER(first, second, row, size) \
     { \
         const long a = first, b = second; \
@@ -99,7 +99,7 @@ static int add_near(
 
    Rows from `looking` on look from a point of their own, if there are such points. Lists have the
    names of points, or their rows if these have no names. Rows whose lists are too short count on:
-   the greatest count tells how long they must be. */
+   the greatest count gives the length they need. */
 __kernel void search(
     __global const double4 *position, __global const int *name, __global const double *look,
     int looking, int split, int count, Grid grid, __global const int *start_one,
@@ -112,20 +112,20 @@ __kernel void search(
         look && i >= looking ? (double4)(vload3(i - looking, look), 0) : position[i];
     const double along[3] = {r.x, r.y, r.z};
     const long cell = cell_of(along[grid.first], along[grid.second], along[grid.third], grid);
-    int found = 0;
+    int count_near = 0;
     middle[i] = 0;
     if (cell < grid.nx * grid.ny * grid.nz) {
         const int cx = cell % grid.nx, cy = cell / grid.nx % grid.ny, cz = cell / grid.nx / grid.ny;
         const size_t place = (size_t)i * row_stride;
-        found = add_near(
+        count_near = add_near(
             r, cx, cy, cz, grid, start_one, position, name, reach2, width, place, item_stride,
-            found, near);
-        middle[i] = found;
+            count_near, near);
+        middle[i] = count_near;
         if (i < split)
-            found = add_near(
+            count_near = add_near(
                 r, cx, cy, cz, grid, start_two, position, name, reach2, width, place, item_stride,
-                found, near);
+                count_near, near);
     }
-    end[i] = found;
-    extremes[i] = (double4)(found, 0, 0, 0);
+    end[i] = count_near;
+    extremes[i] = (double4)(count_near, 0, 0, 0);
 }

@@ -10,7 +10,7 @@ from quintet.components.shared.opencl.functions import ARITHMETIC, BITWISE, ROUN
 from quintet.components.shared.opencl.names import identifier
 from quintet.components.shared.opencl.prelude import Precision, power_name
 from quintet.components.shared.opencl.refusal import Place, PrintError
-from quintet.components.shared.opencl.truths import both, compared
+from quintet.components.shared.opencl.truths import combined, compared
 from quintet.components.shared.opencl.types import (
     FLAG,
     INT,
@@ -175,7 +175,7 @@ class Expressions:
         return Value(f"(-{value.code})", value.kind, number)
 
     def _binop(self, node: ast.BinOp) -> Value:
-        truth = both(node.op, self.print(node.left), self.print(node.right))
+        truth = combined(node.op, self.print(node.left), self.print(node.right))
         if truth is not None:
             return truth
         return self.binary(node.op, self.number(node.left), self.number(node.right), node)

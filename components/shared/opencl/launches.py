@@ -1,4 +1,4 @@
-"""Kernels that are run again and again with nearly the same arguments."""
+"""Kernels that run repeatedly with nearly the same arguments."""
 
 from typing import Any
 
@@ -10,7 +10,7 @@ from quintet.components.shared.opencl.devices import opencl
 
 
 class Launch:
-    """A kernel, and the arguments that it had last: setting one takes as long as many rows.
+    """A kernel that keeps its last arguments: setting one takes as long as computing many rows.
 
     Parameters
     ----------
@@ -18,7 +18,7 @@ class Launch:
     kernel : pyopencl.Kernel
         Used here alone.
     rows : int
-        The kernel must pass over work items beyond them.
+        Work items beyond them must return at once.
     *fixed : DeviceArray, number or array of one struct
         Its last arguments, the same in each run until `fix` replaces them.
     """

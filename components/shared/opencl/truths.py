@@ -1,4 +1,4 @@
-"""Truths in OpenCL C: of one number, or of each of several lanes."""
+"""Truth values in OpenCL C: of one number, or of each of several lanes."""
 
 import ast
 from collections.abc import Sequence
@@ -30,8 +30,8 @@ def compared(
     return Value(parts[0] if len(parts) == 1 else f"({together.join(parts)})", kind)
 
 
-def both(op: ast.operator, left: Value, right: Value) -> Value | None:
-    """Print `&`, `|` or `^` of two truths; None of numbers."""
+def combined(op: ast.operator, left: Value, right: Value) -> Value | None:
+    """Print `&`, `|` or `^` of two truth values; None of numbers."""
     is_truth = left.kind == right.kind and left.kind in (FLAG, MASK)
     if not is_truth or not isinstance(op, ast.BitAnd | ast.BitOr | ast.BitXor):
         return None

@@ -1,5 +1,5 @@
-/* Images in planes of symmetry, behind all other rows; see shared/symmetry.py. Each pass is about one
-   plane across an axis. */
+/* Images in planes of symmetry, behind all other rows; see shared/symmetry.py. Each pass is about
+   one plane across an axis. */
 
 /* Write the images of positions; `twice` is two times the place of the plane. */
 __kernel void image_positions(

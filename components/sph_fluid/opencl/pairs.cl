@@ -1,8 +1,8 @@
 /* Accelerations and rates of density, summed over pairs; laws and structs are printed.
 
-   DIFFUSION, XSPH and DAMPER are defined where a scene has them; VOLUME where particles of the boundary have volumes of
-   their own, over that of a particle of the fluid; APPARENT where these have velocities of their own
-   that kinematic viscosity sees. */
+   DIFFUSION, XSPH and DAMPER are defined where a scene has them; VOLUME where particles of the
+   boundary have volumes of their own, over that of a particle of the fluid; APPARENT where these
+   have velocities of their own that kinematic viscosity sees. */
 
 #define AS_IT_IS(slope) slope
 #ifdef VOLUME

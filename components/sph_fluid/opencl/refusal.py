@@ -3,7 +3,7 @@
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.interfaces.errors import SceneError
 
-# Every key of a fluid stands here, in `SUPPORTED`, or in the table of `mistakes`: a test sees to it
+# Every key of a fluid stands here, in `SUPPORTED`, or in the table of `limits`: a test sees to it
 # that one added later is not ignored in silence.
 SUPPORTED = frozenset(
     """material xsph shepard_every acoustic_damper spacing sound_speed fluid initial lost_limit

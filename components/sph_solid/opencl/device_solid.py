@@ -1,8 +1,8 @@
 """Bodies of particles as a component whose steps run on an OpenCL device.
 
 An `SphSolid` on the host makes the particles, and reads gauges, totals, views, checks and
-snapshots: rows are copied into its state before. Between these a step brings back eight numbers,
-and the forces on glued particles.
+snapshots: rows are copied into its state before. Between these, a step copies back only partial
+extremes, 24 kB, and the forces on glued particles.
 """
 
 from collections.abc import Mapping
@@ -143,7 +143,7 @@ class DeviceSolid(Component):
             self.host.check()
 
     def warnings(self) -> Mapping[str, str]:
-        """Reasons why the results may be wrong, as of the last step that they were judged at."""
+        """Reasons why the results may be wrong, from the last judgement; see `ENERGY_EVERY`."""
         return self.host.warnings()
 
     def notes(self) -> tuple[str, ...]:

@@ -84,7 +84,7 @@ class DeviceState:
         state.reference = self.reference.get()
 
     def is_finite(self) -> bool:
-        """Whether all is finite that a step need not notice; overwrites `extremes`."""
+        """Whether energies, strains, temperatures and damage are finite; overwrites `extremes`."""
         names = ("energy", "strain", "temperature", "damage")
         arrays = (self.arrays[name] for name in names)
         count = np.int32(self.count)
@@ -99,12 +99,12 @@ class DeviceState:
         return low, high[:3], bool(high[3] > 0.0)
 
     def ends(self) -> tuple[Array, Array]:
-        """Least (3,) and greatest (4,) of the rows that a kernel wrote as such."""
+        """Least (3,) of the negated rows in `least`, and greatest (4,) of those in `most`."""
         least = self.cells.greatest(self.least, self.count)
         return -least[:3], self.cells.greatest(self.most, self.count)
 
     def reflect(self, dt: float) -> None:
-        """Let what has passed a plane of symmetry, in a step of dt [s], be its image."""
+        """Reflect particles that passed a plane of symmetry in a step of dt [s]."""
         if self.images.mirrors:
             arrays = self.arrays
             self.images.reflect(self.queue, self.count, arrays)

@@ -32,7 +32,7 @@ __kernel void mirror_stress(
 #endif
 }
 
-/* Let particles that have passed a plane change places with their images; see shared/symmetry.py. */
+/* Reflect particles that passed a plane; see shared/symmetry.py. */
 __kernel void reflect(
     int count, int axis, double at, double inward, __global double *position,
     __global double *velocity, __global double *acceleration, __global double *deviator)

@@ -1,8 +1,9 @@
 /* Sums over pairs: the gradient of velocity, and accelerations. Laws and structs are printed.
 
    CORRECTED is defined where gradients are corrected, RINGS where neighbours are azimuthal images
-   of rings: sums along y cancel then, of images at both sides of which one is listed. A row of stress has WIDTH rows of four
-   numbers: six of tau, or nine where gradients are corrected, then rho and rho_0. */
+   of rings: images at both sides cancel along y, and one of the two is listed. A row of stress has
+   WIDTH rows of four numbers: six of tau, or nine where gradients are corrected, then rho and
+   rho_0. */
 
 #if LANES == 4
 #define STRESS(k, part) \

@@ -77,7 +77,8 @@ static int is_near_plane(double3 at, double4 plane, double support)
 }
 
 /* Whether each particle meets one of a few that may be missing in its list, or is one of these and
-   near a plane, or a ring that became much wider or narrower; see neighbours.py:may_miss and kernels/motion.py:meets_unlisted. */
+   near a plane, or a ring that became much wider or narrower; see neighbours.py:may_miss and
+   kernels/motion.py:meets_unlisted. */
 __kernel void meet_few(
     int count, int few, __global const int *fast, int plane_count, __global const double4 *planes,
     double support, double skin, double dt, __global const double4 *place,

@@ -63,8 +63,8 @@ class Stepping:
         self._meet_few = kernels.meet_few
         self._law, self._gravity = bytes_of(law, np.float64), np.array([*gravity, 0.0])
         self._laws, self._tables, self._table_start = self._of_materials(materials)
-        corners = [(plane.axis, plane.position, plane.inward, 0.0) for plane in lists.mirrors]
-        self._planes = DeviceArray.of(self.queue, np.array(corners).reshape(-1, 4))
+        planes = [(plane.axis, plane.position, plane.inward, 0.0) for plane in lists.mirrors]
+        self._planes = DeviceArray.of(self.queue, np.array(planes).reshape(-1, 4))
 
     def _of_materials(self, materials: list[Solid]) -> tuple[DeviceArray, ...]:
         """Numbers of the materials, tables of their isentropes, and where each of these starts."""
@@ -99,17 +99,18 @@ class Stepping:
             return False
         rows, arrays, count = self.rows, self.rows.arrays, np.int32(self.rows.count)
         position, velocity = arrays["position"], arrays["velocity"]
-        moved = rows.most, rows.least
+        displacements = rows.most, rows.least  # room for those in the middle and at the end
         run(
             self.queue, self._displacements, rows.count, count, np.float64(dt), rows.place,
-            position, velocity, rows.reference, *moved,
+            position, velocity, rows.reference, *displacements,
         )  # fmt: skip
         means = np.zeros((2, 4))
         if not self.lists.mirrors:
-            means = np.array([self._sums.of(array, rows.count) for array in moved]) / rows.count
+            sums = [self._sums.of(array, rows.count) for array in displacements]
+            means = np.array(sums) / rows.count
         marks = DeviceArray(self.queue, (rows.count,), np.uint8)
         limit = np.float64(0.25 * skin * skin)
-        run(self.queue, self._mark_fast, rows.count, count, *means, limit, *moved, marks)
+        run(self.queue, self._mark_fast, rows.count, count, *means, limit, *displacements, marks)
         fast = np.flatnonzero(marks.get())
         if not 0 < len(fast) <= FEW:
             return len(fast) > FEW

@@ -196,7 +196,7 @@ def test_every_key_of_a_gas_is_supported_or_limited():
     assert keys == SUPPORTED | limited and not SUPPORTED & limited
 
 
-def test_parts_of_the_host_that_no_key_tells_of_are_refused(monkeypatch):
+def test_host_parts_without_a_key_are_refused(monkeypatch):
     monkeypatch.setattr(device_gas, "refuse_what_needs_the_processor", lambda *_: None)
     with pytest.raises(SceneError, match=r"on device opencl, .* found MovingClouds\. Set"):
         DeviceGas(params_of(STREAM | REFUSED["moving"]), DEVICE)

@@ -91,6 +91,15 @@ def test_a_device_has_the_bits_of_the_processor(table):
     assert device.totals().internal == processor.totals().internal
 
 
+def test_points_that_a_strong_drive_moves_are_listed_in_time():
+    # At the turn of its way a driven point stands still, and many steps are made without a look.
+    drive = DRIVEN["drive"] | {"mode": "point", "amplitude": 0.12 * DRIVEN["lattice"]["spacing"]}
+    processor, device = pair(DRIVEN | {"drive": drive, "substeps": 400}, 4)
+    saved = device.save()
+    require_same_bits(processor.save(), saved)
+    assert not np.array_equal(saved["listed"], processor.built.start)
+
+
 def test_a_device_that_is_no_processor_gets_lists_by_columns_and_single_lanes(monkeypatch):
     monkeypatch.setattr(Device, "is_processor", property(lambda self: False))
     processor, device = pair(PERIODIC, 200)

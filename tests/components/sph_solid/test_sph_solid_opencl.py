@@ -228,7 +228,7 @@ def test_what_is_not_finite_is_found_on_the_device():
         device.check()
 
 
-def test_parts_of_the_host_that_no_key_tells_of_are_refused(monkeypatch):
+def test_host_parts_without_a_key_are_refused(monkeypatch):
     monkeypatch.setattr(device_solid, "refuse_what_needs_the_processor", lambda *_: None)
     with pytest.raises(SceneError, match=r"on device opencl, .* found ReferenceSums\. Set device"):
         DeviceSolid(params_of(REFUSED["total_lagrangian"]), DEVICE)
