@@ -1,9 +1,9 @@
 """The gas as a component whose steps run on an OpenCL device.
 
-A `MeshlessGas` on the host makes the nodes, and reads gauges, totals, views, checks and snapshots:
-states are copied into its arrays before. Between these a step brings back the flows through the
-boundary, the shortest stable step, and the change of the densities. Point particles are the host's:
-with them each stage copies the states.
+A `MeshlessGas` on the host makes the nodes, and reads gauges, totals, views, checks and snapshots;
+the states are copied into its arrays first. A step copies back the flows through the boundary, the
+shortest stable step and the change of the densities. Point particles stay on the host: with them
+each stage copies the states.
 """
 
 from dataclasses import replace

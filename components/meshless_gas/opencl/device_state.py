@@ -46,19 +46,21 @@ class DeviceState:
         self.cloud = cloud = DeviceCloud(domain, self.tables)
         empty, whole, nodes = self.tables.empty, cloud.whole, cloud.nodes
         self.primitive = empty(whole, 5)  # kg/m3, m/s, Pa
-        self.gradients = empty(whole, 15)
+        self.gradients = empty(whole, 15)  # of these, over m
+        # kg/m3, kg/(m2 s), J/m3; residuals are these over s
         self.conservative, self.start, self.residual = (empty(nodes, 5) for _ in range(3))
+        # Pa, m/s, s
         self.lowest, self.sound, self.bounds = (
             DeviceArray(self.queue, (count,)) for count in (whole, whole, nodes)
         )
-        self.wrong = DeviceArray(self.queue, (len(STAGES),), np.int32)
+        self.wrong = DeviceArray(self.queue, (len(STAGES),), np.int32)  # see stages.cl
 
     def run(self, name: str, rows: int, *arguments: Any) -> None:
-        """Run a kernel for so many rows; it must pass over those beyond them."""
+        """Run a kernel for so many rows; work items beyond them must return at once."""
         run(self.queue, self._kernels[name], rows, *arguments)
 
     def put(self, primitive: Array, conservative: Array) -> None:
-        """Copy states (m, 5) of nodes and ghosts and (n, 5) of nodes, none of them wrong."""
+        """Copy states (m, 5) of nodes and ghosts and (n, 5) of nodes; clear rates and failures."""
         self.tables.put(self.primitive, primitive)
         self.tables.put(self.conservative, conservative)
         self.tables.put(self.residual, np.zeros(self.residual.shape))

@@ -173,7 +173,7 @@ static double height(
         + (there.f2 - at.f2) * normal.f2;
 }
 
-/* What friction and conduction take from what enters, a sum for each group. */
+/* Momentum and energy that enter by friction and conduction at walls, a sum for each group. */
 __kernel void sum_wall_flows(
     int count, int whole, __global const int *rows, __global const int *above,
     __global const double *positions, __global const double *normals,

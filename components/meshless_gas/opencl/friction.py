@@ -17,9 +17,9 @@ class DeviceFriction:
     Parameters
     ----------
     friction : Viscous
-        That of the processor.
+        Friction of the host's gas.
     state : DeviceState
-        Of the gas.
+        States of the gas on the device.
     """
 
     def __init__(self, friction: Viscous, state: DeviceState) -> None:
@@ -67,7 +67,7 @@ class DeviceFriction:
         )  # fmt: skip
 
     def sum_flows(self, stage: int) -> None:
-        """Sum what walls take from what enters after a stage."""
+        """Sum the friction and the heat flux of all walls after a stage."""
         cloud, first = self.state.cloud, np.int32(5 * stage * self._groups)
         self.state.run(
             "sum_wall_flows", self.walls, np.int32(self.walls), np.int32(cloud.whole), self._rows,
@@ -76,7 +76,7 @@ class DeviceFriction:
         )  # fmt: skip
 
     def flows(self) -> Array:
-        """Less (3, 5) kg/s, N, W than enters through walls that slip, after each stage."""
+        """What friction and conduction add (3, 5) kg/s, N, W to what enters, after each stage."""
         return np.asarray(self._parts.get().sum(axis=1))
 
     def shorten(self, first: np.int32, parts: DeviceArray) -> None:

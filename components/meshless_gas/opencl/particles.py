@@ -19,12 +19,12 @@ class DeviceParticles:
     Parameters
     ----------
     particles : CoupledParticles
-        Those of the host.
+        Particles of the host's gas.
     domain : Domain
     work : Fluxes
-        Of the host; its states and residuals are overwritten.
+        Work arrays of the host's gas; its states and residuals are overwritten.
     state : DeviceState
-        Of the gas.
+        States of the gas on the device.
     """
 
     def __init__(

@@ -3,8 +3,8 @@
 from quintet.components.meshless_gas.params import MeshlessGasParams
 from quintet.interfaces.errors import SceneError
 
-# Every key of a gas stands here, in `SUPPORTED`, or in the table of `limits`: a test sees to it
-# that one added later is not ignored in silence.
+# Every key of a gas stands here, in `SUPPORTED`, or in the table of `limits`: a test fails
+# if a new key is in neither.
 SUPPORTED = frozenset(
     """gas dimensions axisymmetric box sphere plate initial zones riemann vortex neighbours order
     limiter limiter_threshold courant viscous local_steps steady probes fronts particles

@@ -1,8 +1,8 @@
 /* Stages of a step, stable steps and changes; see kernels/motion.py. */
 
-/* Make a stage; after one that failed the states are left as they are. `wrong` has for each stage
-   the last row of a state that is none, or -1. `shortest` is the step of the node with the least,
-   where nodes have steps of their own; else 0. */
+/* Advance by a stage; after one that failed the states stay as they are. `wrong` has for each stage
+   the last row whose density or pressure is not positive and finite, or -1. `shortest` is the
+   shortest stable step if nodes have local steps, else 0. */
 __kernel void advance(
     int count, int nodes, int whole, int stage, double step, double shortest, double old,
     double new, double gamma, __global const int *rows, __global const double *bounds,

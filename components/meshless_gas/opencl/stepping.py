@@ -40,7 +40,7 @@ class Stepping:
         Of the processor, where it is the device.
     domain : Domain
     friction : WallFriction
-        That of the processor.
+        Friction of the host's gas.
     """
 
     def __init__(

@@ -3,8 +3,8 @@
 from quintet.components.particle_dynamics.params import ParticleLatticeParams
 from quintet.interfaces.errors import SceneError
 
-# Every key of a lattice stands here, in `SUPPORTED`, or in the table of `limits`: a test sees to it
-# that one added later is not ignored in silence.
+# Every key of a lattice stands here, in `SUPPORTED`, or in the table of `limits`: a test fails
+# if a new key is in neither.
 SUPPORTED = frozenset(
     """lattice seven_roots damping frozen drive baths collision_rate seed boltzmann integrator
     courant substeps averages if_point_lost""".split()

@@ -1,5 +1,5 @@
-/* Stages of a step: see kernels/motion.py. `half_stage` is half of the length of a stage, `motion`
-   that of a driven pair at its end. Positions and their rates have a fourth component of 0.
+/* Stages of a step: see kernels/motion.py. `half_stage` is half the length of a stage; `motion` is
+   the prescribed motion of a driven pair at its end. Positions and rates have a fourth component, 0.
 
    RANDOM is defined where baths or collisions act in the middle of a stage, DAMPED and DAMPS_ALL
    where forces take predicted velocities. */

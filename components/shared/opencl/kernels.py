@@ -14,7 +14,7 @@ def kernels(*names: str, folder: Path = HERE) -> list[str]:
 
 
 def named(program: Program, name: str, law: Any, *arguments: Any, returns: str = "") -> str:
-    """Print a law, and let kernels call it by a name, and its struct by that of `returns`."""
+    """Print a law and define its name for kernels; `returns` names the struct that it returns."""
     printed_name, kind = program.add(law, *arguments)
     lines = [f"#define {name} {printed_name}"]
     if returns:

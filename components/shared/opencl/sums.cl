@@ -1,4 +1,4 @@
-/* Sums of each column over a part of the rows, in an order that the number of parts alone sets. */
+/* Sum each column over a part of the rows; the order depends only on the number of parts. */
 
 __kernel void sum_parts(__global const double4 *rows, int count, __global double4 *part)
 {

@@ -1,4 +1,4 @@
-"""Sums over rows of a device, whose bits do not depend on threads: the order of terms is set."""
+"""Sums over rows of a device in a fixed order: the bits do not depend on the number of threads."""
 
 from typing import Any
 

@@ -18,7 +18,7 @@ class DeviceCopies:
     ----------
     communicator : mpi4py communicator
     halo : HaloAndImages
-        Of the host, which finds them.
+        Copies and images of the host's fluid, which finds them.
     queue : pyopencl.CommandQueue
     kernels : pyopencl.Program
         Built from a text that has `shared/opencl/halo.cl` and `images.cl`.

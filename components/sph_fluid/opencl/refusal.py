@@ -3,8 +3,8 @@
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.interfaces.errors import SceneError
 
-# Every key of a fluid stands here, in `SUPPORTED`, or in the table of `limits`: a test sees to it
-# that one added later is not ignored in silence.
+# Every key of a fluid stands here, in `SUPPORTED`, or in the table of `limits`: a test fails
+# if a new key is in neither.
 SUPPORTED = frozenset(
     """material xsph shepard_every acoustic_damper spacing sound_speed fluid initial lost_limit
     remove_inside_bodies dimensions kernel smoothing staggered density gravity density_diffusion

@@ -14,7 +14,7 @@ from quintet.components.shared.materials.strength import returned, turned_and_st
 from quintet.components.shared.numba_options import INNER
 from quintet.components.sph_solid.laws import times
 
-LEAST = 0.02  # η that is kept: of debris that has nothing left to tear
+LEAST = 0.02  # smallest η: failed material may expand without limit
 
 
 class Point(NamedTuple):
@@ -61,19 +61,19 @@ def trace_of(m):  # type: ignore[no-untyped-def]
 
 @njit(inline="always")
 def corrected_scales(eta, trace, dt):  # type: ignore[no-untyped-def]
-    """Factors that make η L and L of a corrected gradient L of this trace [1/s]."""
+    """Factors by which a corrected gradient L of this trace [1/s] gives η L and L."""
     return eta / (1.0 + 0.5 * dt * trace), 1.0
 
 
 @njit(inline="always")
 def plain_scales(eta, trace, dt):  # type: ignore[no-untyped-def]
-    """Factors that make η L and L of a gradient η L of this trace [1/s]."""
+    """Factors by which a gradient η L of this trace [1/s] gives η L and L."""
     return 1.0, 1.0 / (eta - 0.5 * dt * trace)
 
 
 @njit(inline="always")
 def rates(m, scales, trace, dt):  # type: ignore[no-untyped-def]
-    """η L and L [1/s] of a particle in the middle of the step, and the growth of η in it."""
+    """η L and L [1/s] in the middle of the step, and the change of η in it."""
     scale, per = scales
     return times_number(scale, m), times_number(per, m), -dt * scale * trace
 
@@ -139,7 +139,7 @@ def advanced(point, rate_of_point, heating, dt, law):  # type: ignore[no-untyped
 
 @njit(inline="always")
 def stretch_of_heat(density_ratio, failed):  # type: ignore[no-untyped-def]
-    """μ = η - 1 that the temperature follows: what has failed opens, and is not stretched."""
+    """μ = η - 1 for the temperature: at least 0 of failed material, which does not stretch."""
     mu = density_ratio - 1.0
     return max(mu, 0.0) if failed != 0.0 else mu
 
@@ -165,7 +165,7 @@ def divided_stress(s, pressure, eta):  # type: ignore[no-untyped-def]
 
 @njit(inline="always")
 def corrected_stress(tau, eta, b):  # type: ignore[no-untyped-def]
-    """σ K⁻¹/η [Pa], nine numbers by rows, of τ and the inverse of K; τ where that is 0."""
+    """σ K⁻¹/η [Pa], nine by rows, of τ and the inverse of K; τ itself where the inverse is 0."""
     xx, yy, zz, xy, yz, zx = tau
     nine = xx, xy, zx, xy, yy, yz, zx, yz, zz
     if b[0] == 0.0:

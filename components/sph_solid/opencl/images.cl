@@ -12,7 +12,7 @@ __kernel void mirror_rows(
     motion[count + k] = sign[k] * motion[root[k]];
 }
 
-/* And those of rows of stress: M T M with the signs on the diagonal of M. */
+/* Write the images of the rows of stress: M T M, with the signs on the diagonal of M. */
 __kernel void mirror_stress(
     int count, int images, __global const long *root, __global const double4 *sign,
     __global double4 *stress)

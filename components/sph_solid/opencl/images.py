@@ -1,7 +1,7 @@
 """Images of particles in planes of symmetry, on a device; see shared/symmetry.py.
 
-An image of an image has the root of that. Which particles have images is found on the host, from
-the places where they are listed.
+An image of an image has the same root. The host finds which particles have images, from the places
+where they are listed.
 """
 
 from collections.abc import Callable

@@ -4,8 +4,8 @@ from quintet.components.sph_solid.method import method
 from quintet.components.sph_solid.params import SphSolidParams
 from quintet.interfaces.errors import SceneError
 
-# Every key of the bodies stands here, in `SUPPORTED`, or in the table of `limits`: a test sees to
-# it that one added later is not ignored in silence.
+# Every key of the bodies stands here, in `SUPPORTED`, or in the table of `limits`: a test fails
+# if a new key is in neither.
 SUPPORTED = frozenset(
     """spacing bodies dimensions axisymmetric smoothing symmetry fixed glued gravity gauges levels
     courant viscosity_linear viscosity_quadratic kernel_correction""".split()

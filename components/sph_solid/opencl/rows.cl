@@ -22,7 +22,7 @@ __kernel void survey(
     least[i] = (double4)(-r, 0);
 }
 
-/* Which particles have a number that is not finite and that a step need not notice. */
+/* Mark particles whose energy, strain, temperature or damage is not finite. */
 __kernel void find_not_finite(
     int count, __global const double *energy, __global const double *strain,
     __global const double *temperature, __global const double *damage,
@@ -57,7 +57,7 @@ __kernel void displacements(
 
 static double square_of(double4 d) { return d.x * d.x + d.y * d.y + d.z * d.z; }
 
-/* Mark those that are further than a limit from where the mean of all would have them. */
+/* Mark particles further than a limit from their listed place, less the mean displacement. */
 __kernel void mark_fast(
     int count, double4 mean_of_middle, double4 mean_of_last, double limit2,
     __global const double4 *middle, __global const double4 *last, __global uchar *is_fast)
