@@ -25,7 +25,7 @@ from quintet.coupler.report.picture import Picture, draw_run
 from quintet.coupler.report.profiles import profiles_of
 from quintet.coupler.report.view_steps import view_files
 from quintet.coupler.scene.overrides import command_line
-from quintet.coupler.scene.planned_times import cores_here, serial_of
+from quintet.coupler.scene.planned_times import cores_here, may_be_divided, serial_of
 from quintet.coupler.scene.scene import ComponentPlan, OutputSettings, Scene
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.serving.serve import peak_memory
@@ -198,9 +198,10 @@ def advise(scene: Scene, participants: Mapping[str, Participant]) -> dict[str, A
 
 def _load(plan: ComponentPlan, participant: Participant) -> Load:
     times = participant.timing  # of its rank 0, where it has several
-    share = serial_share(times.compute, times.cpu, plan.threads)
-    planned = serial_of(plan) if share is None else share
-    measured, divisible = share is not None, plan.manifest.ranks
+    cores = plan.threads if plan.device == "cpu" else 1  # a device computes beside them
+    share = serial_share(times.compute, times.cpu, cores)
+    planned, measured = serial_of(plan) if share is None else share, share is not None
+    divisible = may_be_divided(plan)
     return Load(times.compute, plan.threads, planned, measured, plan.ranks, divisible)
 
 

@@ -30,13 +30,22 @@ def planned_load(component: ComponentPlan, file: SceneFile) -> Load:
         component.threads,
         alone.serial,
         ranks=component.ranks,
-        divisible=component.manifest.ranks,
+        divisible=may_be_divided(component),
     )
 
 
 def serial_of(component: ComponentPlan) -> float:
-    """Share of a component's time that more threads do not shorten, as its kind plans."""
-    return component.planned.serial if component.planned else 1.0
+    """Share of a component's time that more threads do not shorten, as its kind plans.
+
+    It is all of it on a device, which computes beside the cores.
+    """
+    is_on_cores = component.device == "cpu"
+    return component.planned.serial if component.planned and is_on_cores else 1.0
+
+
+def may_be_divided(component: ComponentPlan) -> bool:
+    """Whether more cores, as ranks, may shorten a component's time."""
+    return component.manifest.ranks and component.device == "cpu"
 
 
 def planned_advice(scene: Scene) -> dict[str, Any]:

@@ -16,7 +16,7 @@ from quintet.coupler.measures.advice import (
     times_on,
     waits,
 )
-from quintet.coupler.scene.planned_times import planned_advice, planned_seconds
+from quintet.coupler.scene.planned_times import planned_advice, planned_load, planned_seconds
 from quintet.coupler.scene.read import load
 
 SLOW_AND_FAST = {"slow": Load(90.0, serial=0.1), "fast": Load(10.0, serial=0.1)}
@@ -129,3 +129,10 @@ def test_times_before_a_run_are_items_times_steps_over_the_planned_rate(monkeypa
     row = planned_advice(scene)["components"]["water"]
     assert row["advised_threads"] == 2 and not row["serial_measured"]
     assert row["advised_seconds"] == pytest.approx(seconds * (plan.serial + (1 - plan.serial) / 2))
+
+
+def test_cores_do_not_shorten_what_a_device_computes():
+    settings = ["components.water.threads=1", "components.water.device='opencl'"]
+    scene = load("dam_break_cubes", "quick", settings)
+    planned = planned_load(scene.components["water"], scene.file)
+    assert planned.on(8) == planned.seconds > 0.0 and not planned.divisible
