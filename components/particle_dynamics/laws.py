@@ -127,7 +127,7 @@ def prescribed_motion(driven, time):  # type: ignore[no-untyped-def]
 
 @njit(inline="always")
 def driven_places(driven, moved, first, second):  # type: ignore[no-untyped-def]
-    """Coordinates [m] of a driven pair along its axis, from those that it drifted to."""
+    """Prescribed coordinates [m] of a driven pair along its axis, from those after the drift."""
     if driven.is_free:
         middle = 0.5 * (first + second)
         apart = 0.5 * (driven.distance + moved)

@@ -89,8 +89,8 @@ def leave(near, normal, back, gamma):  # type: ignore[no-untyped-def]
 def slip(near, normal, velocity, gamma):  # type: ignore[no-untyped-def]
     """State beside a wall that moves: nothing goes through; struck hard, it stops.
 
-    A settled flow does not run into its walls, and what is left of it in a node beside one must not
-    raise the pressure. Density follows the pressure without losses.
+    A settled flow has no velocity into its walls; a rest of it in the node beside a wall must not
+    raise the pressure. Density follows the pressure at constant entropy.
     """
     into = -(
         (near[1] - velocity[0]) * normal[0]

@@ -23,7 +23,7 @@ def outward_speed(state, normal):  # type: ignore[no-untyped-def]
 
 @njit(**INNER)
 def let_waves_out(out, sound, density, normal, more):  # type: ignore[no-untyped-def]
-    """Keep of a change (5,) what is carried along, if gas leaves, and what runs against it."""
+    """Part of a change (5,) that leaves: with the flow, if gas leaves, and as waves of sound."""
     outward = outward_speed(more, normal)
     carried = min(max(out / (CROSSING * sound), 0.0), 1.0)
     against = min(max((out / sound - 1.0) / CROSSING, 0.0), 1.0)  # if the gas is faster
@@ -82,7 +82,7 @@ def continued(state, out, sound, normal, more, low, high, rough):  # type: ignor
     Hirsch, Numerical Computation of Internal and External Flows 2 (1990), section 19.1.
     """
     a, b, c, d, e = let_waves_out(out, sound, state[0], normal, more)
-    # Smooth flow may go on beyond what is near; where a shock is there is nothing beyond it.
+    # Smooth flow may be extrapolated beyond the values nearby; at a shock it is bounded by them.
     smooth = 1.0 - rough / ROUGH
     density = held_near(state[0] + a, low[0], high[0], smooth, LEAST * low[0])
     u = held_near(state[1] + b, low[1], high[1], smooth, -math.inf)

@@ -18,9 +18,9 @@ from quintet.components.meshless_gas.params import MeshlessGasParams
 from quintet.components.meshless_gas.parts import FixedNodes, WallFriction
 from quintet.components.meshless_gas.ports import SHOWS
 from quintet.components.meshless_gas.ranks.one import OneRank
-from quintet.components.shared.opencl.devices import device_of
+from quintet.components.shared.opencl.devices import device_of, require_doubles
+from quintet.components.shared.opencl.limits import refuse_parts
 from quintet.interfaces.component import Component, Fields, Keys, Resources, Totals
-from quintet.interfaces.errors import SceneError
 
 if TYPE_CHECKING:
     from quintet.components.meshless_gas.point_particles.point_particles import CoupledParticles
@@ -39,12 +39,7 @@ class DeviceGas(Component):
     def __init__(self, params: MeshlessGasParams, resources: Resources = FIRST_DEVICE) -> None:
         refuse_what_needs_the_processor(params, resources.device)
         device = device_of(resources.device)
-        if not device.has_doubles:
-            raise SceneError(
-                f"device {resources.device}: it must compute in double precision, in which the "
-                f"state of a gas is kept; {device.name} does not. Choose another of those that "
-                "`quintet devices` lists."
-            )
+        require_doubles(device, resources.device)
         self.params, (self.takes, self.gives) = params, self.ports_of(params)
         self.host = MeshlessGas(params, replace(resources, device="cpu"))
         self._particles = particles(self.host)
@@ -70,11 +65,7 @@ class DeviceGas(Component):
             if not isinstance(part, known) and part not in self._particles
         ]
         names += [] if isinstance(host.all_ranks, OneRank) else [type(host.all_ranks).__name__]
-        if names:
-            raise SceneError(
-                f"on device {device}, a gas must have no parts that the processor alone "
-                f'computes; found {", ".join(names)}. Set device = "cpu".'
-            )
+        refuse_parts(names, device, "a gas")
 
     def describe(self) -> Fields:
         """State static fields."""

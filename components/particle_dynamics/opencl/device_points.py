@@ -23,9 +23,9 @@ class FullLists(NamedTuple):
     """Neighbours of each point on a device: the k-th of point i at i row_stride + k item_stride."""
 
     near: DeviceArray
-    first: DeviceArray  # (n,) until here: points of lower number that list this one
-    second: DeviceArray  # (n,) until here: those that this one lists; then those of higher number
-    end: DeviceArray  # (n,)
+    first: DeviceArray  # (n,) end of the points of lower number that list this one
+    second: DeviceArray  # (n,) end of the points that this one lists
+    end: DeviceArray  # (n,) end of the points of higher number that list this one
     row_stride: np.int64
     item_stride: np.int64
 

@@ -18,10 +18,9 @@ from quintet.components.particle_dynamics.ranks.one import OneRank
 from quintet.components.particle_dynamics.ranks.terms import Terms
 from quintet.components.particle_dynamics.state import TIME, Model, State
 from quintet.components.shared.opencl.cells import Cells
-from quintet.components.shared.opencl.devices import build, device_of
+from quintet.components.shared.opencl.devices import build, device_of, require_doubles
 from quintet.components.shared.search.verlet_list import slack
 from quintet.interfaces.component import Array, Fields, Resources
-from quintet.interfaces.errors import SceneError
 
 MOST_AT_ONCE = 50  # steps without a look at how far points have moved
 LANES_OF_PROCESSORS = 4  # doubles in one of its vectors; other devices make lanes of points
@@ -50,12 +49,7 @@ class DeviceRows:
     ) -> None:
         refuse_what_needs_the_processor(params, resources.device)
         device = device_of(resources.device)
-        if not device.has_doubles:
-            raise SceneError(
-                f"device {resources.device}: it must compute in double precision, in which the "
-                f"state of a lattice is kept; {device.name} does not. Choose another of those that "
-                "`quintet devices` lists."
-            )
+        require_doubles(device, resources.device)
         self._host = host = OneRank(state, model, terms)
         self.state, self.model, self.terms = state, model, terms
         self.ids, self.owned, self.bathed, self.skin = host.ids, host.owned, host.bathed, host.skin

@@ -140,6 +140,15 @@ def device_of(name: str) -> Device:
     return all_devices[number]
 
 
+def require_doubles(device: Device, name: str) -> None:
+    """Refuse a device, which a scene names so, that does not compute in double precision."""
+    if not device.has_doubles:
+        raise SceneError(
+            f"device {name}: it must compute in double precision, in which states are kept; "
+            f"{device.name} does not. Choose another of those that `quintet devices` lists."
+        )
+
+
 def build(queue: Any, text: str, precision: Precision = "double") -> Any:
     """Compile a program for the device of a queue; quotients and roots are rounded correctly."""
     cl, (device,) = opencl(), queue.context.devices

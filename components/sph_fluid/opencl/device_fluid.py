@@ -17,6 +17,8 @@ from functools import partial
 
 import numpy as np
 
+from quintet.components.shared.opencl.devices import require_doubles
+from quintet.components.shared.opencl.limits import refuse_parts
 from quintet.components.shared.opencl.ranks import device_and_queue
 from quintet.components.shared.search.verlet_list import longest
 from quintet.components.sph_fluid import MANIFEST, diagnostics, judgement
@@ -52,12 +54,7 @@ class DeviceFluid(Component):
     def __init__(self, params: SphFluidParams, resources: Resources = FIRST_DEVICE) -> None:
         refuse_what_needs_the_processor(params, resources.device)
         device, queue = device_and_queue(resources)
-        if not device.has_doubles:
-            raise SceneError(
-                f"device {resources.device}: it must compute in double precision, in which the "
-                f"state of a fluid is kept; {device.name} does not. Choose another of those that "
-                "`quintet devices` lists."
-            )
+        require_doubles(device, resources.device)
         self.params, (self.takes, self.gives) = params, self.ports_of(params)
         self.host = SphFluid(params, replace(resources, device="cpu"))
         self.walls_move = self.host.walls_move
@@ -70,15 +67,11 @@ class DeviceFluid(Component):
         self._put()
 
     def _refuse_other_parts(self, device: str) -> None:
-        """Refuse parts that a step on the processor calls, and one on a device does not."""
+        """Refuse parts that only a step on the processor calls."""
         host = self.host
         parts = (host.symmetry, host.open_boundaries, host.all_ranks)
         other_parts = [name for part in parts if (name := type(part).__name__) not in PARTS]
-        if other_parts:
-            raise SceneError(
-                f"on device {device}, a fluid must have no parts that the processor alone "
-                f'computes; found {", ".join(other_parts)}. Set device = "cpu".'
-            )
+        refuse_parts(other_parts, device, "a fluid")
 
     def describe(self) -> Fields:
         """Request how surfaces are to be sampled."""

@@ -1,7 +1,7 @@
 """Checks that a device can compute all that a fluid's parameters ask for."""
 
+from quintet.components.shared.opencl.limits import Limit, refuse_wrong
 from quintet.components.sph_fluid.params import SphFluidParams
-from quintet.interfaces.errors import SceneError
 
 # Every key of a fluid stands here, in `SUPPORTED`, or in the table of `limits`: a test fails
 # if a new key is in neither.
@@ -18,33 +18,16 @@ SUPPORTED = frozenset(
 
 
 def refuse_what_needs_the_processor(params: SphFluidParams, device: str) -> None:
-    """Refuse parameters that a device does not compute; pyopencl is not needed for it.
-
-    Raises
-    ------
-    SceneError
-        With all keys at fault, the values found, and what to do.
-    """
-    sentences = [
-        f"on device {device}, {key} must be {right}; found {value}. {remedy}, "
-        'or set device = "cpu".'
-        for key, (value, is_wrong, right, remedy) in limits(params).items()
-        if is_wrong
-    ]
-    if sentences:
-        raise SceneError(sentences)
+    """Refuse parameters that a device does not compute; see `refuse_wrong`."""
+    refuse_wrong(limits(params), device)
 
 
-def limits(params: SphFluidParams) -> dict[str, tuple[object, bool, str, str]]:
-    """Keys that a device limits: the value, whether it is wrong, what is right, what to do."""
+def limits(params: SphFluidParams) -> dict[str, Limit]:
+    """Limits of keys on devices."""
     edge = params.boundary
-    lists = {
-        f"boundary.{name}": (len(getattr(edge, name)), bool(getattr(edge, name)), "empty")
-        for name in ("periodic", "inflow", "outflow")
-    }
-    choices = {
-        "boundary.method": (edge.method, edge.method == "potential", "mdbc or dbc"),
-    }
-    return {key: (*limit, "Remove them") for key, limit in lists.items()} | {
-        key: (*limit, "Change it") for key, limit in choices.items()
-    }
+    counts = {name: len(getattr(edge, name)) for name in ("periodic", "inflow", "outflow")}
+    is_potential = edge.method == "potential"
+    return {
+        f"boundary.{name}": Limit(count, count > 0, "empty", "Remove them")
+        for name, count in counts.items()
+    } | {"boundary.method": Limit(edge.method, is_potential, "mdbc or dbc", "Change it")}

@@ -8,7 +8,8 @@ extremes, 24 kB, and the forces on glued particles.
 from collections.abc import Mapping
 from dataclasses import replace
 
-from quintet.components.shared.opencl.devices import device_of
+from quintet.components.shared.opencl.devices import device_of, require_doubles
+from quintet.components.shared.opencl.limits import refuse_parts
 from quintet.components.sph_solid import MANIFEST
 from quintet.components.sph_solid.component import LOAD, SphSolid
 from quintet.components.sph_solid.diagnostics import failure
@@ -21,7 +22,6 @@ from quintet.components.sph_solid.params import SphSolidParams
 from quintet.components.sph_solid.ports import SHOWS
 from quintet.components.sph_solid.ranks.one import OneRank
 from quintet.interfaces.component import Component, Fields, Keys, Resources, Totals
-from quintet.interfaces.errors import SceneError
 
 FIRST_DEVICE = Resources(device="opencl")
 FORCES = frozenset({LOAD})  # known on the host after each step
@@ -38,11 +38,7 @@ class DeviceSolid(Component):
     def __init__(self, params: SphSolidParams, resources: Resources = FIRST_DEVICE) -> None:
         refuse_what_needs_the_processor(params, resources.device)
         device = device_of(resources.device)
-        if not device.has_doubles:
-            raise SceneError(
-                f"device {resources.device}: it must compute in double precision; {device.name} "
-                "does not. Choose another of those that `quintet devices` lists."
-            )
+        require_doubles(device, resources.device)
         self.params, (self.takes, self.gives) = params, self.ports_of(params)
         self.host = SphSolid(params, replace(resources, device="cpu"))
         self._refuse_other_parts(resources.device)
@@ -52,17 +48,13 @@ class DeviceSolid(Component):
         self._put()
 
     def _refuse_other_parts(self, device: str) -> None:
-        """Refuse parts that a step on the processor calls, and one on a device does not."""
+        """Refuse parts that only a step on the processor calls."""
         host = self.host
         pairs = ((host.sums, CurrentSums), (host.all_ranks, OneRank))
         other_parts = [
             type(part).__name__ for part, expected in pairs if type(part) is not expected
         ]
-        if other_parts:
-            raise SceneError(
-                f"on device {device}, bodies must have no parts that the processor alone "
-                f'computes; found {", ".join(other_parts)}. Set device = "cpu".'
-            )
+        refuse_parts(other_parts, device, "bodies")
 
     def describe(self) -> Fields:
         """Return positions and masses of glued particles."""
