@@ -17,7 +17,7 @@ import difflib
 import json
 import math
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from contextvars import ContextVar
 from functools import cache
 from pathlib import Path
@@ -96,6 +96,7 @@ def read(
     where: str,
     folder: Path | None = None,
     starts: bool = True,
+    beside: Collection[str] = (),
 ) -> tuple[Any, list[str]]:
     """Check settings against a parameter class; return it filled, or None and every mistake.
 
@@ -111,6 +112,8 @@ def read(
         Where their data files lie.
     starts : bool
         See `starts_there`.
+    beside : collection of str
+        Further keys of the same table, which others read: a misspelt one may be meant.
     """
     if extreme := list(extremes(table, where)):
         return None, extreme
@@ -124,7 +127,8 @@ def read(
     except ValidationError as error:
         wrong = _drop_renamed(params, _by_place(error.errors(), table))
         more = [f"{where}: {len(wrong) - MOST_SAID} more mistakes."] if wrong[MOST_SAID:] else []
-        return None, [*(_sentence(params, where, mistake) for mistake in wrong[:MOST_SAID]), *more]
+        sentences = (_sentence(params, where, mistake, beside) for mistake in wrong[:MOST_SAID])
+        return None, [*sentences, *more]
     except (ArithmeticError, np.linalg.LinAlgError) as error:
         return None, [beyond_computing(where, table, error)]
     except (TypeError, ValueError) as error:
@@ -239,13 +243,14 @@ def renamed_keys(params: type) -> Mapping[str, str]:
     return renamed
 
 
-def _sentence(params: type, where: str, mistake: Any) -> str:
+def _sentence(params: type, where: str, mistake: Any, beside: Collection[str]) -> str:
     names = [str(part) for part in mistake["loc"]]
     place = ".".join([where, *names])
     if new := _renamed(params, names):
         return f"{place} is now {new}. Rename it."
     if mistake["type"] in ("unexpected_keyword_argument", "extra_forbidden"):
-        return unknown(place, names[-1], _names(_class_at(params, names[:-1])))
+        known = _names(_class_at(params, names[:-1]))
+        return unknown(place, names[-1], {*known, *(beside if len(names) == 1 else ())})
     if mistake["type"] in ("missing", "missing_argument"):
         return f"{place} is needed. Add {names[-1]} to it."
     if mistake["type"] == "value_error":

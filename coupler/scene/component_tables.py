@@ -140,8 +140,9 @@ def _component(
         known = ", ".join(sorted(known_kinds()))
         mistakes.append(f"{where}.kind must be a name; found {shown(kind)}. Known here: {known}.")
         return None
-    of_all = {field.name for field in fields(ComponentKeys)} & keys.keys()
-    common, wrong = read(ComponentKeys, {key: keys.pop(key) for key in of_all}, where)
+    of_all = {field.name for field in fields(ComponentKeys)}
+    common_keys = {key: keys.pop(key) for key in of_all & keys.keys()}
+    common, wrong = read(ComponentKeys, common_keys, where)
     mistakes += wrong
     if common is None:
         return None
@@ -162,7 +163,7 @@ def _component(
     try:
         if partners and manifest.complete:
             keys = manifest.complete(keys, partners)
-        params, wrong = read(manifest.params, keys, where, folder, starts=not begun)
+        params, wrong = read(manifest.params, keys, where, folder, not begun, of_all)
         if wrong:
             mistakes += wrong
             return None

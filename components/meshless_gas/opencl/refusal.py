@@ -24,7 +24,7 @@ def limits(params: MeshlessGasParams) -> dict[str, Limit]:
     bodies = params.moving.bodies if params.moving is not None else ()
     return {
         "moving": Limit(
-            f"{len(bodies)} bodies", params.moving is not None, "left out", "Remove it"
+            f"bodies: {len(bodies)}", params.moving is not None, "left out", "Remove it"
         ),
         "boundaries.accommodation": Limit(
             f"some of {', '.join(rarefied)}", bool(rarefied), "left out", "Remove it"

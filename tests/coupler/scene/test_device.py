@@ -72,6 +72,11 @@ def test_ranks_share_a_device_or_have_one_each():
         assert (plan.ranks, plan.device) == (2, device)
 
 
+def test_a_misspelt_device_is_told_from_keys_of_the_kind():
+    with pytest.raises(SceneError, match=r"water\.devise is not known\. Did you mean device\?"):
+        load("still_water", settings=["components.water.devise='opencl'"])
+
+
 def test_a_kind_without_devices_refuses_them_as_it_is_loaded():
     with pytest.raises(SceneError, match=r"kind dem_bodies must compute on the processor.*opencl"):
         find("dem_bodies").load("opencl")
