@@ -19,7 +19,7 @@ LONGEST = 3600.0  # s for all of it; fifteen minutes on two quiet cores
 STATUS = {
     "quintet diff runs/two_springs runs/finer": 1,  # it names the first difference
     "quintet run dam_break_cubes --preset quick --set end=0.1": 1,  # too short
-    "timeout -s INT 20": 124,
+    "timeout --foreground -s INT 20": 124,
     "quintet run --resume runs/heave": 1,  # so coarse a cube misses its draught
 }
 
