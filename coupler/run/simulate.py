@@ -362,9 +362,7 @@ def conclude(run: ActiveRun) -> int:
         "advice": results.advise(scene, run.participants),
         **run.disturbance.summary(),
     }
-    if outcome["status"] == "done":
-        snapshots.remove(snapshots.snapshots(folder))
-    else:
+    if outcome["status"] != "done":
         content |= how_to_resume(folder, outcome)
     results.write(folder, content)
     if outcome["status"] == "refused":
@@ -384,5 +382,7 @@ def conclude(run: ActiveRun) -> int:
             "\nquintet: interrupted after the run: pictures left out", file=sys.stderr, flush=True
         )
         return results.INTERRUPTED
+    finally:  # not earlier: a run whose process is killed while it draws goes on from the last one
+        snapshots.remove(snapshots.snapshots(folder))
     met = all(expected.met or not expected.required for expected in outcomes)
     return results.DONE if met and not run.ledger.warnings else results.UNMET

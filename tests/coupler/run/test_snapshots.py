@@ -3,6 +3,8 @@
 import os
 import shutil
 import signal
+import subprocess
+import sys
 import time
 from pathlib import Path
 
@@ -106,6 +108,28 @@ def test_a_run_whose_component_was_killed_goes_on_from_its_last_snapshot(tmp_pat
     assert status(*arguments, "--resume", run.folder) == 0
     assert status(*arguments, "--out", tmp_path / "undisturbed") == 0
     assert same(tmp_path / "undisturbed", run.folder)
+
+
+KILLED_WHILE_IT_DRAWS = """
+import os, signal
+from quintet.coupler.cli import main
+from quintet.coupler.run import results
+
+results.draw = lambda *_: os.kill(os.getpid(), signal.SIGKILL)
+main()
+"""
+
+
+def test_a_run_killed_while_it_draws_goes_on_from_its_last_snapshot(tmp_path, capsys):
+    path = write_scene(tmp_path, end=0.2)
+    arguments = ["run", path, "--set", "output.snapshots=0.06", "--out"]
+    killed, undisturbed = tmp_path / "killed", tmp_path / "undisturbed"
+    program = [sys.executable, "-c", KILLED_WHILE_IT_DRAWS, *map(str, arguments), killed]
+    assert subprocess.run(program, capture_output=True, timeout=100).returncode == -signal.SIGKILL
+    assert status("run", "--resume", killed) == 0
+    assert not snapshots.snapshots(killed)
+    assert status(*arguments, undisturbed) == 0
+    assert same(undisturbed, killed)
 
 
 @pytest.mark.parametrize(("pause", "has_snapshot"), [(0.4, True), (0.0, False)])
