@@ -18,9 +18,10 @@ from quintet.components.meshless_gas.params import MeshlessGasParams
 from quintet.components.meshless_gas.parts import FixedNodes, WallFriction
 from quintet.components.meshless_gas.ports import SHOWS
 from quintet.components.meshless_gas.ranks.one import OneRank
+from quintet.components.shared.opencl.component import DeviceComponent
 from quintet.components.shared.opencl.devices import device_of, require_doubles
 from quintet.components.shared.opencl.limits import refuse_parts
-from quintet.interfaces.component import Component, Fields, Keys, Resources, Totals
+from quintet.interfaces.component import Fields, Resources
 
 if TYPE_CHECKING:
     from quintet.components.meshless_gas.point_particles.point_particles import CoupledParticles
@@ -28,13 +29,13 @@ if TYPE_CHECKING:
 FIRST_DEVICE = Resources(device="opencl")
 
 
-class DeviceGas(Component):
+class DeviceGas(DeviceComponent):
     """Moves a gas through the nodes of a fixed cloud, on a device."""
 
     Params: type[MeshlessGasParams] = MeshlessGasParams
     manifest = MANIFEST
     shows = SHOWS
-    compiles = True
+    host: MeshlessGas
 
     def __init__(self, params: MeshlessGasParams, resources: Resources = FIRST_DEVICE) -> None:
         refuse_what_needs_the_processor(params, resources.device)
@@ -67,14 +68,6 @@ class DeviceGas(Component):
         names += [] if isinstance(host.all_ranks, OneRank) else [type(host.all_ranks).__name__]
         refuse_parts(names, device, "a gas")
 
-    def describe(self) -> Fields:
-        """State static fields."""
-        return self.host.describe()
-
-    def bind(self, static: Fields, joined: Keys) -> None:
-        """Take the static fields of partners."""
-        self.host.bind(static, joined)
-
     def prime(self, fields: Fields) -> None:
         """Take the places of particles at the start."""
         self._get()
@@ -85,10 +78,6 @@ class DeviceGas(Component):
         if self._particles:
             self._get()
         return self.host.stable_dt()
-
-    def take(self, fields: Fields) -> None:
-        """Set the motion of particles that a partner moves."""
-        self.host.take(fields)
 
     def step(self, dt: float) -> None:
         """Advance by dt [s]; with local time steps, dt is the smallest."""
@@ -128,62 +117,16 @@ class DeviceGas(Component):
         self._is_read = False  # boundaries have the bits of the device
         self._follow(outcome)
 
-    def _get(self) -> None:
-        """Copy the states into the host's arrays, unless they are there; find loads on walls."""
-        if self._is_read:
-            return
+    def _read(self) -> None:
+        """Copy the states into the host's arrays; find loads on walls."""
         host = self.host
         self.stepping.state.get(host.fluxes.primitive, host.state.conservative)
         host.friction.add_flows(host.motion.domain, host.fluxes.primitive, host.fluxes.flows.copy())
-        self._is_read = True
-
-    def give(self, wanted: Keys) -> Fields:
-        """Copy out the fields of the ports that are wanted."""
-        if wanted:
-            self._get()
-        return self.host.give(wanted)
-
-    def save(self) -> Fields:
-        """Copy out all state, as a gas on the processor has it."""
-        self._get()
-        return self.host.save()
-
-    def load(self, state: Fields) -> None:
-        """Come back to a saved state, of a gas on the processor or on a device."""
-        self.host.load(state)
-        self._put()
-
-    def notes(self) -> tuple[str, ...]:
-        """Changes of neighbours, and the accuracy of clouds of bodies."""
-        return self.host.notes()
 
     def warnings(self) -> dict[str, str]:
         """Doubts about the cloud and the order, and about inflows at which waves have arrived."""
         self._get()
         return self.host.warnings()
-
-    def final_warnings(self) -> dict[str, str]:
-        """Doubts about a flow that was to settle and has not."""
-        self._get()
-        return self.host.final_warnings()
-
-    def totals(self) -> Totals:
-        """Mass, momentum and energies of all nodes."""
-        self._get()
-        return self.host.totals()
-
-    def view(self) -> Fields:
-        """Nodes, and the state at each."""
-        self._get()
-        return self.host.view()
-
-    def walls(self) -> Fields:
-        """Walls of a box, or the wall of a body."""
-        return self.host.walls()
-
-    def items(self) -> int:
-        """Count the nodes."""
-        return self.host.items()
 
 
 def particles(gas: MeshlessGas) -> "list[CoupledParticles]":

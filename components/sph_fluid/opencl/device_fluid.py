@@ -17,6 +17,7 @@ from functools import partial
 
 import numpy as np
 
+from quintet.components.shared.opencl.component import DeviceComponent
 from quintet.components.shared.opencl.devices import require_doubles
 from quintet.components.shared.opencl.limits import refuse_parts
 from quintet.components.shared.opencl.ranks import device_and_queue
@@ -32,7 +33,7 @@ from quintet.components.sph_fluid.pairs.interaction import relative_volume
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.ports import SHOWS
 from quintet.components.sph_fluid.setup.tait import TAIT
-from quintet.interfaces.component import Component, Fields, Keys, Resources, Totals
+from quintet.interfaces.component import Fields, Keys, Resources
 from quintet.interfaces.errors import SceneError
 
 FIRST_DEVICE = Resources(device="opencl")
@@ -42,14 +43,14 @@ PARTS = {
 }  # fmt: skip
 
 
-class DeviceFluid(Component):
+class DeviceFluid(DeviceComponent):
     """A weakly compressible fluid in a tank, and the surfaces that move in it, on a device."""
 
     Params: type[SphFluidParams] = SphFluidParams
 
     manifest = MANIFEST
     shows = SHOWS
-    compiles = True
+    host: SphFluid
 
     def __init__(self, params: SphFluidParams, resources: Resources = FIRST_DEVICE) -> None:
         refuse_what_needs_the_processor(params, resources.device)
@@ -73,10 +74,6 @@ class DeviceFluid(Component):
         other_parts = [name for part in parts if (name := type(part).__name__) not in PARTS]
         refuse_parts(other_parts, device, "a fluid")
 
-    def describe(self) -> Fields:
-        """Request how surfaces are to be sampled."""
-        return self.host.describe()
-
     def bind(self, static: Fields, joined: Keys) -> None:
         """Make room for the samples of the surfaces joined."""
         if np.any(static.get("surface.contact", 0.0)):
@@ -90,13 +87,7 @@ class DeviceFluid(Component):
     def prime(self, fields: Fields) -> None:
         """Refuse bodies that begin out of place; remove fluid inside them, where a scene asks."""
         if self.host.pistons.links:
-            self._get()
-            self.host.prime(fields)
-            self._put()
-
-    def stable_dt(self) -> float:
-        """Largest step [s], from the rates of the last one."""
-        return self.host.stable_dt()
+            super().prime(fields)
 
     def take(self, fields: Fields) -> None:
         """Put the surface samples where they are in the coming step."""
@@ -207,11 +198,13 @@ class DeviceFluid(Component):
         self._is_read, self._speed = True, longest(state.velocity_pressure[: state.fluid])
         self._follow_lists()
 
-    def _get(self) -> None:
-        """Copy the rows into the host's state, unless they are there."""
-        if not self._is_read:
-            self.stepping.rows.get(self.host.state)
-            self._is_read = True
+    def _read(self) -> None:
+        """Copy the rows into the host's state."""
+        self.stepping.rows.get(self.host.state)
+
+    def _is_finite(self) -> bool:
+        """Whether velocities are finite."""
+        return self.stepping.rows.is_finite()
 
     def _list_on_host(self) -> None:
         """List what is near, for gauges, from where the rows were when they were sorted."""
@@ -220,12 +213,6 @@ class DeviceFluid(Component):
             host.lists.make(host.state, host.boundary, host.symmetry, host.team)
         self._is_listed = True
 
-    def check(self) -> None:
-        """Refuse a particle whose velocity is not finite."""
-        if self._is_read or not self.stepping.rows.is_finite():
-            self._get()
-            self.host.check()
-
     def give(self, wanted: Keys) -> Fields:
         """Copy out the mean force of the last step on each sample, and what gauges read now."""
         if not wanted <= LOADS:
@@ -233,44 +220,3 @@ class DeviceFluid(Component):
             if not self._is_listed:
                 self._list_on_host()
         return self.host.give(wanted)
-
-    def save(self) -> Fields:
-        """Copy out all state, as a fluid on the processor has it."""
-        self._get()
-        return self.host.save()
-
-    def load(self, state: Fields) -> None:
-        """Come back to a saved state, of a fluid on the processor or on a device."""
-        self.host.load(state)
-        self._put()
-
-    def begin_from(self, state: Fields) -> None:
-        """Begin from the state of another run."""
-        self.host.begin_from(state)
-        self._put()
-
-    def totals(self) -> Totals:
-        """Mass, momentum and energies of the fluid that is left."""
-        self._get()
-        return self.host.totals()
-
-    def view(self) -> Fields:
-        """Fluid particles in the order of their birth."""
-        self._get()
-        return self.host.view()
-
-    def notes(self) -> tuple[str, ...]:
-        """What was not as a scene may have meant it."""
-        return self.host.notes()
-
-    def warnings(self) -> dict[str, str]:
-        """Compression, fluid that leaves its tank, and energy from nowhere."""
-        return self.host.warnings()
-
-    def walls(self) -> Fields:
-        """Return the tank's closed faces, and the obstacles in it."""
-        return self.host.walls()
-
-    def items(self) -> int:
-        """Fluid, wall and sample particles."""
-        return self.host.items()

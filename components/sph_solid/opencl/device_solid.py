@@ -5,9 +5,9 @@ snapshots: rows are copied into its state before. Between these, a step copies b
 extremes, 24 kB, and the forces on glued particles.
 """
 
-from collections.abc import Mapping
 from dataclasses import replace
 
+from quintet.components.shared.opencl.component import DeviceComponent
 from quintet.components.shared.opencl.devices import device_of, require_doubles
 from quintet.components.shared.opencl.limits import refuse_parts
 from quintet.components.sph_solid import MANIFEST
@@ -21,19 +21,19 @@ from quintet.components.sph_solid.pair_sums import CurrentSums
 from quintet.components.sph_solid.params import SphSolidParams
 from quintet.components.sph_solid.ports import SHOWS
 from quintet.components.sph_solid.ranks.one import OneRank
-from quintet.interfaces.component import Component, Fields, Keys, Resources, Totals
+from quintet.interfaces.component import Fields, Keys, Resources
 
 FIRST_DEVICE = Resources(device="opencl")
 FORCES = frozenset({LOAD})  # known on the host after each step
 
 
-class DeviceSolid(Component):
+class DeviceSolid(DeviceComponent):
     """Elastic-plastic bodies of particles, and what of them is glued to a mesh, on a device."""
 
     Params: type[SphSolidParams] = SphSolidParams
     manifest = MANIFEST
     shows = SHOWS
-    compiles = True
+    host: SphSolid
 
     def __init__(self, params: SphSolidParams, resources: Resources = FIRST_DEVICE) -> None:
         refuse_what_needs_the_processor(params, resources.device)
@@ -55,19 +55,6 @@ class DeviceSolid(Component):
             type(part).__name__ for part, expected in pairs if type(part) is not expected
         ]
         refuse_parts(other_parts, device, "bodies")
-
-    def describe(self) -> Fields:
-        """Return positions and masses of glued particles."""
-        self._get()
-        return self.host.describe()
-
-    def bind(self, static: Fields, joined: Keys) -> None:
-        """Take down whether a mesh carries the glued particles."""
-        self.host.bind(static, joined)
-
-    def stable_dt(self) -> float:
-        """Return the share `courant` of the smallest stable step of all particles."""
-        return self.host.stable_dt()
 
     def take(self, fields: Fields) -> None:
         """Set which particles are still glued, and their velocities in the coming step."""
@@ -122,58 +109,16 @@ class DeviceSolid(Component):
         self.stepping.rows.put(self.host.state)
         self._is_read = True
 
-    def _get(self) -> None:
-        """Copy the particles into the host's state, unless they are there."""
-        if not self._is_read:
-            self.stepping.rows.get(self.host.state)
-            self._is_read = True
+    def _read(self) -> None:
+        """Copy the particles into the host's state."""
+        self.stepping.rows.get(self.host.state)
 
-    def check(self) -> None:
-        """Refuse a particle whose energy, strain, temperature or damage is not finite."""
-        if self._is_read or not self.stepping.rows.is_finite():
-            self._get()
-            self.host.check()
-
-    def warnings(self) -> Mapping[str, str]:
-        """Reasons why the results may be wrong, from the last judgement; see `ENERGY_EVERY`."""
-        return self.host.warnings()
-
-    def notes(self) -> tuple[str, ...]:
-        """Settings that would be better for a slow impact."""
-        return self.host.notes()
+    def _is_finite(self) -> bool:
+        """Whether energies, strains, temperatures and damages are finite."""
+        return self.stepping.rows.is_finite()
 
     def give(self, wanted: Keys) -> Fields:
         """Copy out forces on glued particles, and readings of bodies, gauges and levels."""
         if not wanted <= FORCES:
             self._get()
         return self.host.give(wanted)
-
-    def save(self) -> Fields:
-        """Copy out all state, as bodies on the processor have it."""
-        self._get()
-        return self.host.save()
-
-    def load(self, state: Fields) -> None:
-        """Restore a saved state, of bodies on the processor or on a device."""
-        self.host.load(state)
-        self._put()
-
-    def begin_from(self, state: Fields) -> None:
-        """Begin from the state of another run of the same particles; judge from here on."""
-        self._get()
-        self.host.begin_from(state)
-        self._put()
-
-    def totals(self) -> Totals:
-        """Mass, momentum and energies, without the motion of particles that a mesh carries."""
-        self._get()
-        return self.host.totals()
-
-    def view(self) -> Fields:
-        """Particles in the order of their birth, with stress, strain and damage."""
-        self._get()
-        return self.host.view()
-
-    def items(self) -> int:
-        """Count the particles."""
-        return self.host.items()
