@@ -156,8 +156,13 @@ def _windows_stood_for(windows: Array, every: int, done: Array) -> Array:
 
 
 def bar_about(expected: float, deviation: float) -> float:
-    """Bound of the magnitude of a normally distributed error, with the probability CONFIDENCE."""
+    """Bound of the magnitude of a normally distributed error, with the probability CONFIDENCE.
+
+    It is nan where one of the two numbers is.
+    """
     size = abs(expected)
+    if math.isnan(size + deviation):
+        return math.nan
     if not deviation > 0.0:
         return size
     normal = NormalDist(size, deviation)

@@ -94,7 +94,7 @@ def _row(
         "name": quantity.name,
         "component": quantity.component,
         "field": quantity.field,
-        "order": bar.orders.order(key) if bar.samples else None,
+        "order": bar.orders.order(key) if key in bar.orders.products else None,
         "window": number_or_none(window_bar(usual)),
         "value": value,
         **columns,
@@ -141,7 +141,8 @@ def _of_value(
     middle, *sides = (
         value - corrected(error) for error in (expected, expected - deviation, expected + deviation)
     )
-    return number_or_none(bar_about(middle, max(abs(side - middle) for side in sides)))
+    # nan, where one of the curves has no value: its scatter is not known.
+    return number_or_none(bar_about(middle, float(np.max(np.abs(np.array(sides) - middle)))))
 
 
 def beside(outcomes: Sequence[Any], rows: Sequence[Mapping[str, Any]]) -> list[Any]:

@@ -12,11 +12,12 @@ from error_bar_cases import mechanical, springs, thermal
 from error_bar_coverage import coverage, run
 
 from quintet.coupler.cli import main
-from quintet.coupler.coupling.judgement.error_bar import Orders, sampled_window
+from quintet.coupler.coupling.judgement.error_bar import Orders, WindowError, sampled_window
 from quintet.coupler.coupling.judgement.error_growth import DIFFERENCES, differences, nearest
 from quintet.coupler.measures.error_bars import STUDENT, bar_about, window_bar
 from quintet.coupler.report.diff import compare
 from quintet.coupler.run import snapshots
+from quintet.coupler.run.error_bars import error_bar_of, summary
 from quintet.coupler.scene.read import load
 from quintet.interfaces.errors import SceneError
 
@@ -82,6 +83,16 @@ def test_the_bar_of_a_value_holds_nine_of_ten_normal_errors():
     errors = np.random.default_rng(6).normal(1.0, 2.0, 100_000)
     assert np.mean(np.abs(errors) <= bar_about(1.0, 2.0)) == pytest.approx(0.9, abs=0.005)
     assert bar_about(-3.0, 0.0) == 3.0
+    assert math.isnan(bar_about(3.0, math.nan)) and math.isnan(bar_about(math.nan, 1.0))
+
+
+def test_a_run_that_ends_before_its_second_sample_has_no_order():
+    """Of such a run the first window alone is sampled, which no order is measured from."""
+    scene = load("two_springs", settings=["output.watch=['lower.motion.position']", "expect=[]"])
+    bar = error_bar_of(scene)
+    bar.samples = [WindowError(1, [0.1], [0.0] * DIFFERENCES, [0.1], [0.0])]
+    (row,) = summary(bar, scene, None)["watched"]
+    assert row["order"] is row["window"] is row["value"] is None and row["errors"] == [0.1]
 
 
 @pytest.mark.parametrize("scheme", ["serial", "parallel", "iterated"])
