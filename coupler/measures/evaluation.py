@@ -243,6 +243,8 @@ def reference_value(expectation: Expectation, folder: Path) -> float:
         return float(expectation.value or 0.0)
     where = f"expectation {expectation.name}: reference {expectation.csv}"
     end = math.inf if expectation.end is None else expectation.end
+    if expectation.measure == "at":
+        end = expectation.begin
     first, last = reference.times[[0, -1]]
     if expectation.begin > last or end < first:
         raise SceneError(
@@ -250,6 +252,16 @@ def reference_value(expectation: Expectation, folder: Path) -> float:
             f"{last:g} s. Correct begin or end."
         )
     if expectation.measure in DISTANCES:
+        part = time_series.points_between(reference, expectation.begin, end)
+        if not len(part.times):
+            raise SceneError(
+                f"{where} must have a time from {expectation.begin:g} to {end:g} s; it has none. "
+                "Correct begin or end."
+            )
+        if expectation.measure == "relative_rms" and not part.values.any():
+            raise SceneError(
+                f"{where} must not be 0 at all times: relative_rms divides by its size. Use rms."
+            )
         return 0.0
     value = _measured(expectation, reference, end)
     if math.isnan(value):
@@ -369,9 +381,11 @@ def value_of(
     end = last if wanted is None else wanted
     if (needed := max(end, expectation.begin)) > last * (1.0 + ROUNDING):
         return math.nan, needed + run_end - last
+    if target is not None and expectation.measure in ("mean", "integral"):
+        # Over the same time as of the reference, which may begin later or end before.
+        computed = time_series.between(computed, *target.times[[0, -1]])
     if expectation.measure not in DISTANCES:
         return _measured(expectation, computed, end), None
     assert target is not None
-    inside = (target.times >= expectation.begin) & (target.times <= end)
-    part = Curve(target.times[inside], target.values[inside])
+    part = time_series.points_between(target, expectation.begin, end)
     return time_series.distance(computed, part, expectation.measure == "relative_rms"), None

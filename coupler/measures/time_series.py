@@ -84,6 +84,12 @@ def between(curve: Curve, begin: float, end: float) -> Curve:
     return Curve(cut, np.interp(cut, times, values))
 
 
+def points_between(curve: Curve, begin: float, end: float) -> Curve:
+    """Points of a curve in a time interval, its ends included; there may be none."""
+    inside = (curve.times >= begin) & (curve.times <= end)
+    return Curve(curve.times[inside], curve.values[inside])
+
+
 def mean(curve: Curve) -> float:
     """Mean over time."""
     span = curve.times[-1] - curve.times[0]

@@ -256,6 +256,7 @@ def test_a_reference_that_cannot_be_measured_is_a_mistake(tmp_path):
     for settings, word in (
         ({"measure": "crossing", "level": 5.0, "unit": "s"}, "must pass the level 5.0"),
         ({"measure": "rms", "begin": 3.0}, "must reach into 3 to inf s; it has 0 to 1 s"),
+        ({"measure": "rms", "begin": 0.2, "end": 0.8}, "must have a time from 0.2 to 0.8 s"),
     ):
         mistakes = check(_expectation(csv="ref.csv", **settings), gives, tmp_path)
         assert len(mistakes) == 1 and word in mistakes[0]
@@ -298,3 +299,26 @@ def test_provenance_that_is_complete_is_taken_and_told(tmp_path, recording):
         outcome = evaluate(expectation, recording, tmp_path)
         assert outcome.doi == settings.get("doi", "")
         assert outcome.read_from == settings.get("read_from", "")
+
+
+def test_a_value_before_its_reference_begins_is_a_mistake(tmp_path):
+    _write(tmp_path, "t,x\n1,1\n2,2\n")
+    expectation = _expectation(csv="ref.csv", measure="at", begin=0.5)
+    (mistake,) = check(expectation, {"cubes": (MOTION, LOAD)}, tmp_path)
+    assert "must reach into 0.5 to 0.5 s; it has 1 to 2 s" in mistake
+
+
+def test_a_curve_of_zeros_has_no_relative_distance(tmp_path):
+    _write(tmp_path, "t,x\n0,0\n1,0\n2,3\n")
+    expectation = _expectation(csv="ref.csv", measure="relative_rms", unit="1", end=1.0)
+    (mistake,) = check(expectation, {"cubes": (MOTION, LOAD)}, tmp_path)
+    assert "must not be 0 at all times" in mistake
+
+
+@pytest.mark.parametrize(("measure", "unit"), [("mean", "m"), ("integral", "m s")])
+def test_a_mean_is_over_the_times_of_its_reference(tmp_path, recording, measure, unit):
+    """x = 1 + t from 0 to 2 s; the reference is the same curve, from 1 to 1.5 s."""
+    _write(tmp_path, "t,x\n1,2\n1.5,2.5\n")
+    for end in (None, 2.0):
+        expectation = _expectation(csv="ref.csv", measure=measure, unit=unit, end=end)
+        assert evaluate(expectation, recording, tmp_path).met
