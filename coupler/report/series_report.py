@@ -93,10 +93,10 @@ def _status(kind: str, content: Content) -> tuple[str, bool]:
 def _study(content: Content) -> Iterator[Part]:
     advice = content["recommended"]
     words = [
-        f"The cheapest refinement that meets all expectations is {advice['label']}, "
+        f"The cheapest refinement that meets all required expectations is {advice['label']}, "
         f"{three_digits(advice['cpu'])} s of processor time."
         if advice
-        else "No refinement meets all expectations."
+        else "No refinement meets all required expectations."
     ]
     sentences = words if content["has_expectations"] else []
     yield Part(

@@ -1,5 +1,6 @@
 """What the runs of a study say: orders and limits by kind, shares of the error, the cheapest."""
 
+import math
 from typing import Any
 
 from quintet.coupler.measures.convergence import Limit, Order, as_table, observed_order, richardson
@@ -66,11 +67,14 @@ def _finest(kind: str, ladder: list[Row], rows: list[Row]) -> float:
 
 
 def shares_at(label: str | None, all_rows: list[Row]) -> Row | None:
-    """Shares of the error of the recommended refinement; without one, of the finest."""
+    """Shares of the error of the recommended refinement; without one, of the finest.
+
+    With several kinds that is the one with the least product of all sizes, whatever their units.
+    """
     rows = [row for row in all_rows if row["status"] == "done"]
     chosen = [row for row in rows if row["label"] == label]
     sized = chosen or [row for row in rows if row["ladders"] and row["errors"]]
-    row = min(sized, key=lambda row: sorted(row["sizes"].values()), default=None)
+    row = min(sized, key=lambda row: math.prod(row["sizes"].values()), default=None)
     kinds: list[str] = [kind for kind in KINDS if _ladder(kind, rows)]
     if row is None or not kinds:
         return None

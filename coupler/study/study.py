@@ -210,10 +210,15 @@ def recommendation(summary: Row) -> list[str]:
     best = summary["recommended"]
     if best:
         cost = f"{best['cpu']:.3g} s of processor time"
-        return [f"recommended: {best['label']}, the cheapest that meets all expectations ({cost})"]
+        required = any(row["required"] for row in summary["rows"])
+        text = "that meets all required expectations"
+        text = text if required else "of all, as no expectation is required"
+        return [f"recommended: {best['label']}, the cheapest {text} ({cost})"]
+    if all(row["status"] != "done" for row in summary["rows"]):
+        return ["recommended: none, as no refinement is done"]
     if not summary["has_expectations"]:
         return ["recommended: none, as there are no expectations; name a wanted --error"]
-    return ["recommended: none; no refinement meets all expectations"]
+    return ["recommended: none; no refinement meets all required expectations"]
 
 
 def _wanted_words(wanted: Row) -> list[str]:

@@ -10,6 +10,11 @@ import pytest
 from spring_scene import command, command_json, write
 from started import write_scene
 
+from quintet.coupler.scene.study_table import Refinement
+from quintet.coupler.study.conclusion import conclude, shares_at
+from quintet.coupler.study.row import row_of
+from quintet.coupler.study.study import recommendation
+
 REFINEMENT = """
 [[study]]
 label = "{0}"
@@ -50,7 +55,7 @@ def test_a_study_observes_the_order_of_an_integrator(tmp_path, capsys):
     assert [row["met"] for row in report["rows"]] == [False, False, True]
     assert report["recommended"]["label"] == "0.00390625"
     output = capsys.readouterr().out
-    assert "recommended: 0.00390625, the cheapest that meets all expectations" in output
+    assert "recommended: 0.00390625, the cheapest that meets all required expectations" in output
     assert "not met" in output and "spring: CPU [s]" in output and "energy" not in output
 
 
@@ -85,6 +90,38 @@ def test_a_refinement_that_fails_is_told_and_the_others_count(tmp_path, capsys):
     assert status == 3 and report["recommended"] is None
     assert [row["status"] for row in report["rows"]] == ["failed", "done"]
     assert "asked to raise" in (tmp_path / "all" / "dies" / "run.log").read_text()
+
+
+def row(label, status="done", **outcome):
+    """A refinement with one expectation; a run that failed evaluates none."""
+    known = {"name": "a", "value": 1.0, "reference": 1.0, "within": 0.1, "unit": "m", "met": True}
+    expected = [known | {"required": True} | outcome] if status == "done" else []
+    return row_of(Refinement(label, {}), {"status": status, "expect": expected})
+
+
+@pytest.mark.parametrize(
+    ("rows", "words"),
+    [
+        ([row("a")], "a, the cheapest that meets all required expectations"),
+        ([row("a", met=False)], "none; no refinement meets all required expectations"),
+        ([row("a", required=False, met=False)], "the cheapest of all, as no expectation is req"),
+        ([row("a", "failed"), row("b", "failed")], "none, as no refinement is done"),
+    ],
+)
+def test_a_recommendation_says_what_it_is_judged_by(rows, words):
+    (sentence,) = recommendation(conclude("scene", rows))
+    assert words in sentence
+
+
+def test_the_finest_of_several_kinds_does_not_depend_on_units():
+    sizes = {"coarse": (0.02, 3e-4), "fine": (0.01, 4e-4)}  # m, s
+    for unit in (1.0, 1e3, 1e6):
+        rows = []
+        for label, (spacing, window) in sizes.items():
+            ladder = {"spacing": spacing, "coupling": unit * window}
+            refinement = Refinement(label, {}, spacing, "spacing", ladder, ("spacing",))
+            rows.append(row_of(refinement, {"status": "done"}) | {"errors": {"a": 0.1}})
+        assert shares_at(None, rows)["label"] == "fine"
 
 
 def test_a_wanted_error_is_delivered_by_the_cheapest_or_by_an_extrapolated_setting(
