@@ -16,6 +16,7 @@ from scipy.special import stdtrit
 CONFIDENCE = 0.95  # of the interval of an order
 SAFETY = 1.25  # factor of Roache's grid convergence index, where the order is observed
 LOWEST, HIGHEST = 1e-2, 20.0  # orders that are searched
+END = 1e-3  # an order as near to one of them is none: the fit would be better beyond
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,7 +88,8 @@ def observed_order(
     Returns
     -------
     Order or None
-        None for fewer than two sizes, or an error of 0.
+        None for fewer than two sizes, or an error of 0; against a finest run also where no order
+        from `LOWEST` to `HIGHEST` fits best.
     """
     if len(set(sizes)) < 2 or min(sizes) <= finest or not all(0.0 < e < math.inf for e in errors):
         return None
@@ -100,6 +102,8 @@ def observed_order(
         order = float(np.polyfit(np.log(h), logs, 1)[0])
     else:
         order = float(minimize_scalar(misfit, bounds=(LOWEST, HIGHEST), method="bounded").x)
+        if not LOWEST + END < order < HIGHEST - END:
+            return None
     constant = math.exp(float(np.mean(logs - _log_powers(h, order, finest))))
     freedom = len(h) - 2
     if freedom < 1:

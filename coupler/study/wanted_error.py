@@ -32,6 +32,8 @@ def choose(wanted: float, summary: Row, refinements: Sequence[Refinement]) -> Ro
     done = [row for row in summary["rows"] if row["status"] == "done" and row["errors"]]
     judged, left_out = judged_names(done)
     choice: Row = {"error": wanted, "judged": judged, "left_out": left_out}
+    if not done:
+        return choice | {"reason": "no refinement is done and has an error"}
     if not judged:
         return choice | {"reason": "no required expectation has a relative error"}
     good = [row for row in done if (worst(row, judged) or 0.0) <= wanted and _known(row, judged)]
@@ -76,9 +78,10 @@ def _extrapolate(
     rows = {row["label"]: row for row in summary["rows"]}
     ladder = [rows[label] for label in summary["kinds"][kind]["refinements"]]
     ladder = [row for row in ladder if _known(row, names)]
-    if len(ladder) < 2:
-        return "fewer than two refinements have an error"
-    second, finest = ladder[-2:]
+    coarser = [row for row in ladder if row["sizes"][kind] > ladder[-1]["sizes"][kind]]
+    if not coarser:
+        return "fewer than two sizes have an error"
+    second, finest = coarser[-1], ladder[-1]
     h2, h1 = second["sizes"][kind], finest["sizes"][kind]
     trends = summary["kinds"][kind]
     for step in range(1, STEPS + 1):

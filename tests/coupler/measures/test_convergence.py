@@ -53,6 +53,11 @@ def test_errors_against_the_finest_run_give_the_order_against_the_limit():
     assert observed_order(SIZES, errors).order > 2.1  # as if the finest run were exact
 
 
+@pytest.mark.parametrize("errors", [[0.1] * 3, [0.1, 0.2, 0.4], [0.1, 1e-9, 1e-18]])
+def test_errors_against_the_finest_run_that_follow_no_power_have_no_order(errors):
+    assert observed_order(SIZES[:3], errors, 0.05) is None
+
+
 @pytest.mark.parametrize("sizes", [SIZES, [0.4, 0.2, 0.15], [0.31, 0.2, 0.05]])
 def test_richardson_finds_the_limit_in_any_ratio_of_sizes(sizes):
     limit = richardson(sizes, [3.0 - 2.0 * h**1.5 for h in sizes])

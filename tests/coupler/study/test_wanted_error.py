@@ -73,6 +73,20 @@ def test_where_none_delivers_the_setting_is_extrapolated_with_its_cost():
     assert offer["cpu"] == pytest.approx(size**-3, rel=1e-3)
 
 
+def test_two_refinements_of_the_finest_size_are_extrapolated_from_a_coarser_one():
+    rows = [row(h, 1.0 + h**2) for h in LADDER]
+    rows.append(row(0.1, 1.0 + 0.1**2) | {"label": "0.1 m, in double precision"})
+    offer = choice_of(0.001, rows)["extrapolated"]
+    assert offer["relative"] <= 0.001 and offer["settings"]["spacing"] == offer["size"]
+    reason = choice_of(0.001, rows[2:])["reason"]
+    assert reason == "spacing: fewer than two sizes have an error"
+
+
+def test_what_is_not_done_has_no_error():
+    failed = row(0.1, 1.0) | {"status": "failed", "errors": {}, "required": [], "scales": {}}
+    assert choice_of(0.05, [failed])["reason"] == "no refinement is done and has an error"
+
+
 def test_what_no_refinement_of_this_kind_reduces_is_said():
     choice = choice_of(0.02, [row(h, 1.05 + h**2) for h in LADDER])  # settles 5 % off
     assert "extrapolated" not in choice and "measured" not in choice
