@@ -3,6 +3,8 @@
 import math
 from collections.abc import Callable, Iterable
 
+NEAR_ZERO = 1e-6  # of the first range: where the last one still holds 0, it is no wider than this
+
 
 def middle(first: float, other: float, log: bool) -> float:
     """Arithmetic or geometric mean."""
@@ -21,7 +23,8 @@ def bisect(
     holds : callable
         The predicate; for known values it must be cheap.
     accuracy : float
-        Width of the final range, relative to its middle.
+        Width of the final range, relative to its middle. A limit at 0 has no relative width: a
+        range that still holds 0 is bisected down to `NEAR_ZERO` of the first.
 
     Returns
     -------
@@ -29,15 +32,19 @@ def bisect(
         The last value that holds and the first that does not; None where the first known value
         does not hold, or all do.
     """
+    values = list(known)
     good = bad = math.nan
-    for value in known:
+    for value in values:
         if not holds(value):
             bad = value
             break
         good = value
     if math.isnan(good) or math.isnan(bad):
         return None
+    narrow = NEAR_ZERO * abs(values[-1] - values[0])
     while abs(bad - good) > accuracy * abs(middle(good, bad, log)):
+        if good * bad <= 0.0 and abs(bad - good) <= narrow:
+            break
         value = middle(good, bad, log)
         if value in (good, bad):  # nothing lies between
             break

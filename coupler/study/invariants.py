@@ -95,7 +95,10 @@ def _energy(rule: Energy, rows: list[dict[str, str]]) -> Iterator[Breach]:
     assert most is not None
     for time, energy in total.items():
         if not energy - start <= most:  # also of nan
-            yield time, "energy", f"the total energy rose from {start:.4g} J to {energy:.4g} J"
+            how = f"the total energy rose from {start:.4g} J to {energy:.4g} J"
+            if rule.factor is not None and start == 0.0:
+                how += "; energy.factor of 0 J allows no rise, give energy.amount"
+            yield time, "energy", how
             return
 
 

@@ -151,8 +151,11 @@ def _begin(job: Job, child: ChildRun) -> Any:
 
 
 def was_killed(run: Any) -> bool:
-    """Whether a signal from outside has ended the run, or a process of it, before it was done."""
-    if run["status"] == "done":
+    """Whether a signal from outside has ended the run, or a process of it, before it was done.
+
+    A run that stalled was ended by the series itself.
+    """
+    if run["status"] in ("done", "stalled"):
         return False
     if run.get("exit", 0) < 0:
         return -run["exit"] in OUTSIDE

@@ -129,6 +129,19 @@ def test_a_run_that_was_killed_from_outside_is_no_verdict(tmp_path):
     )
 
 
+def test_a_run_that_stalls_and_is_killed_is_unstable(tmp_path):
+    """A window that takes too long does not end at SIGTERM: the search then kills the run."""
+    (variant,) = load_variants(str(write(tmp_path, limits(STEP + RANGE + INSIDE))))[1].stability
+    child = SimpleNamespace(
+        scene=str(tmp_path / "scene.toml"), preset="", settings=[], swaps=[], transport="memory",
+        stop=lambda: False, run=lambda *_: {"status": "stalled", "exit": -9, "time": 0.5},
+    )  # fmt: skip
+    (tmp_path / "runs").mkdir()
+    search = Search(variant, None, child, tmp_path / "runs", True)
+    assert find_limit(search)
+    assert {verdict.state for verdict in search.verdicts.values()} == {"unstable"}
+
+
 def test_limits_of_all_scenes_make_a_table(tmp_path, monkeypatch, capsys):
     table = STEP + "from = 0.15\nto = 0.25\npredicted = 0.2\nsource = '2/ω'\nend = 12.0\n"
     scenes = {}
@@ -246,6 +259,15 @@ def test_energies_that_nobody_tells_cannot_be_judged(tmp_path):
         verdict(tmp_path, "0,a,,0,0,0\n1,a,,0,0,0\n", "done", energy={"factor": 2.0})
 
 
+def test_a_factor_of_no_energy_is_told(tmp_path):
+    rows = "0,a,,0,0,0\n1,a,,1e-12,0,0\n"
+    assert verdict(tmp_path, rows, energy={"factor": 2.0}).how == (
+        "the total energy rose from 0 J to 1e-12 J; energy.factor of 0 J allows no rise, give "
+        "energy.amount"
+    )
+    assert verdict(tmp_path, rows, energy={"amount": 1e-3}).state == "stable"
+
+
 def test_energies_that_are_not_finite_break(tmp_path):
     for value in ("nan", "inf"):
         rows = f"0,a,,1,0,0\n1,a,,{value},0,0\n"
@@ -262,6 +284,19 @@ def test_bisection_brackets_what_it_looks_for(log, ends):
     assert holds(good) and not holds(bad) and abs(bad - good) <= 0.01 * 7.4
     assert bisect((1.0, 2.0), lambda _: True, log, 0.01) is None
     assert bisect((1.0, 2.0), lambda _: False, log, 0.01) is None
+
+
+@pytest.mark.parametrize("ends", [(0.0, 1.0), (-1.0, 1.0), (1.0, -2.0)])
+def test_a_limit_at_zero_takes_few_runs(ends):
+    values = []
+
+    def holds(value):
+        values.append(value)
+        return value == ends[0] or (value - 1e-12) * (ends[1] - ends[0]) < 0.0
+
+    good, bad = bisect(ends, holds, False, 0.05)
+    assert good <= 1e-12 <= bad or bad <= 1e-12 <= good
+    assert abs(bad - good) <= 3e-6 and len(values) < 30
 
 
 RANGE = "from = 0.1\nto = 0.3\n"
