@@ -53,11 +53,15 @@ def judge(control: str, name: str, run: Row, base: Row | None) -> Row:
         "expectation": name,
         "control": control,
         **{key: outcome[key] if outcome else None for key in keys},
-        # JSON has no infinity.
-        "margin": distance if distance is None or math.isfinite(distance) else None,
-        "base_margin": base_distance,
+        "margin": _finite(distance),
+        "base_margin": _finite(base_distance),
         **_verdict(run, base, distance, base_distance),
     }
+
+
+def _finite(number: float | None) -> float | None:
+    """Return a number that JSON has: it has no infinity."""
+    return None if number is None or math.isinf(number) else number
 
 
 def without_control(name: str) -> Row:

@@ -216,7 +216,8 @@ def _error(scan: Scan, name: str, number: int, outcome: Row) -> float | None:
         return None
     answer = scan.exact(name, number)
     exact = float(outcome["reference"] if answer is None else answer)
-    error = abs(outcome["value"] - exact) / scan.scale.get(name, abs(exact))
+    scale = scan.scale.get(name, abs(exact))  # 0 where the measure of a reference curve is
+    error = abs(outcome["value"] - exact) / scale if scale else math.inf
     return error if math.isfinite(error) else None
 
 

@@ -263,6 +263,14 @@ def test_what_has_no_value_rejects_nothing():
     assert without_control("x")["verdict"] == "NO CONTROL"
 
 
+def test_margins_of_a_tolerance_of_zero_are_numbers_of_json():
+    outcome = {"name": "x", "value": 2.0, "reference": 1.0, "within": 0.0, "unit": "m"}
+    run = {"status": "done", "expect": [outcome]}
+    row = judge("c", "x", run, run)
+    assert row["verdict"] == "BASE REJECTED"
+    json.dumps(row, allow_nan=False)
+
+
 def test_controls_are_no_part_of_what_runs(tmp_path):
     path = scene(tmp_path, SOFT)
     assert "control" not in load(str(path)).resolved

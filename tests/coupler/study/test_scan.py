@@ -83,6 +83,13 @@ def test_errors_are_relative_to_the_scale_that_is_given(tmp_path):
     assert status == 0 and rows(report)[1]["error"] == pytest.approx(0.348 * 0.839 / 100, rel=0.01)
 
 
+def test_a_reference_curve_whose_measure_is_zero_gives_no_relative_error():
+    outcome = {"name": "end", "value": 0.1, "reference": 0.0}
+    scan = Scan(ScanTable(parameter="step", values=(0.1, 1.0)), "step", ("end",), {})
+    row = row_of(scan, 0, {"status": "done", "expect": [outcome]})
+    assert row["error"] is None and row["verdict"] == "SILENT"
+
+
 def test_energy_that_a_run_gains_is_an_error_where_a_scan_judges_it():
     balance = {"scale": 100.0, "run": {"gained": 12.0}}
     result = {"status": "done", "expect": [], "ledger": {"energy_balance": balance}}
