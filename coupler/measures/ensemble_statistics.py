@@ -42,6 +42,11 @@ class Statistics:
         """Quantiles of 5 % and 95 %."""
         return self.quantiles[0], self.quantiles[-1]
 
+    def inside(self, reference: float) -> float | None:
+        """1 where a reference lies within the band, else 0; None of one run: it has no band."""
+        low, high = self.band
+        return float(low <= reference <= high) if self.count > 1 else None
+
 
 def statistics(values: Sequence[float]) -> Statistics | None:
     """Statistics of the values of all runs that have one; None where no run has."""
@@ -72,12 +77,16 @@ class Band:
     low: Array  # (m,), 5 %
     median: Array  # (m,)
     high: Array  # (m,), 95 %
+    count: int  # curves
 
     def share_inside(self, reference: Curve) -> float | None:
-        """Share of the reference's points within the band; None where their times do not meet."""
+        """Share of the reference's points within the band.
+
+        None where their times do not meet, and of one curve: it has no band.
+        """
         times, values = reference
         seen = (times >= self.times[0]) & (times <= self.times[-1])
-        if not seen.any():
+        if not seen.any() or self.count < 2:
             return None
         low, high = (np.interp(times[seen], self.times, side) for side in (self.low, self.high))
         return float(np.mean((values[seen] >= low) & (values[seen] <= high)))
@@ -95,4 +104,4 @@ def band(curves: Sequence[Curve]) -> Band | None:
     times = np.linspace(begin, end, GRID)
     values = np.array([np.interp(times, *curve) for curve in curves])
     low, median, high = np.quantile(values, (BAND[0], 0.5, BAND[1]), axis=0)
-    return Band(times, low, median, high)
+    return Band(times, low, median, high, len(curves))

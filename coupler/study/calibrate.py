@@ -253,7 +253,12 @@ def _study(ranges: Sequence[KeyRange], runs: int, seed: int) -> "Study":
 
 def _values(ranges: Sequence[KeyRange], trial: "Trial") -> list[float]:
     proposed = [trial.suggest_float(span.name, span.low, span.high) for span in ranges]
-    return [float(f"{value:.{DIGITS}g}") for value in proposed]
+    return [_rounded(value, span) for value, span in zip(proposed, ranges, strict=True)]
+
+
+def _rounded(value: float, span: KeyRange) -> float:
+    """Round a value, but not to beyond the ends of its range."""
+    return min(max(float(f"{value:.{DIGITS}g}"), span.low), span.high)
 
 
 def _tell(study: "Study", trials: Sequence["Trial"], rows: Sequence[Row]) -> None:

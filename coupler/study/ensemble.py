@@ -6,6 +6,7 @@ runs are done as those of a sweep: called again, only those that are missing are
 
 import argparse
 import json
+import math
 from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import asdict, dataclass, field, replace
@@ -19,7 +20,7 @@ from quintet.coupler.files.run_files import REPORT
 from quintet.coupler.measures.ensemble_statistics import QUANTILES, Band, band, statistics
 from quintet.coupler.measures.evaluation import curve, reference_curve, reference_value
 from quintet.coupler.measures.expectation import Expectation
-from quintet.coupler.measures.time_series import Curve
+from quintet.coupler.measures.time_series import Curve, points_between
 from quintet.coupler.report.ensemble_report import draw, table, write_statistics
 from quintet.coupler.report.show import console
 from quintet.coupler.report.sweep_report import write_csv
@@ -197,11 +198,14 @@ def _judged(
     known = [value for value in values if value is not None]
     sample, reference = statistics(known), reference_value(expectation, folder)
     inside: float | None = None
-    if expectation.csv is not None:
-        target = reference_curve(expectation, folder)
-        inside = computed.share_inside(target) if computed and target else None
+    target = reference_curve(expectation, folder)
+    if target is not None:
+        if expectation.measure != "at":
+            end = math.inf if expectation.end is None else expectation.end
+            target = points_between(target, expectation.begin, end)
+        inside = computed.share_inside(target) if computed else None
     elif sample is not None:
-        inside = float(sample.band[0] <= reference <= sample.band[1])
+        inside = sample.inside(reference)
     row = asdict(sample) if sample else {"count": 0, "mean": None, "deviation": None}
     row |= (
         {"quantiles": dict(zip(map(str, QUANTILES), sample.quantiles, strict=True))}
@@ -237,6 +241,7 @@ def scatter_of(path: Path, expectation: str) -> float:
     try:
         content: Mapping[str, Any] = json.loads(file.read_text(encoding="utf-8"))
         known = {row["name"]: row["deviation"] for row in content["expectations"]}
+        counts = {row["name"]: row["count"] for row in content["expectations"]}
     except (OSError, ValueError, KeyError, TypeError) as error:
         raise SceneError(
             f"--ensemble {path}: it must be the folder of an ensemble, with its {NAME}; it is not "
@@ -244,7 +249,7 @@ def scatter_of(path: Path, expectation: str) -> float:
         ) from error
     if known.get(expectation) is None:
         raise SceneError(
-            f"--ensemble {path}: it must have two values of {expectation} or more; it has none. "
-            "Name another ensemble, or run more."
+            f"--ensemble {path}: it must have two values of {expectation} or more; it has "
+            f"{counts.get(expectation, 0)}. Name another ensemble, or run more."
         )
     return float(known[expectation])

@@ -22,6 +22,9 @@ def test_one_run_has_no_spread_and_none_has_nothing():
     summary = statistics([2.0])
     assert summary.deviation is None and summary.interval is None and summary.mean == 2.0
     assert statistics([]) is None
+    assert summary.inside(2.0) is summary.inside(1.0) is None
+    line = Curve(np.array([0.0, 1.0]), np.array([0.0, 1.0]))
+    assert band([line]).share_inside(line) is None and band([line, line]).share_inside(line) == 1.0
 
 
 def test_the_interval_covers_the_mean_as_often_as_it_says():

@@ -11,7 +11,10 @@ from spring_scene import command, command_json, write
 
 import quintet
 from quintet.coupler.scene.ensemble_table import draw_settings
+from quintet.coupler.scene.key_ranges import ranges_of
 from quintet.coupler.scene.read import load_variants
+from quintet.coupler.study.calibrate import _rounded
+from quintet.coupler.study.ensemble import scatter_of
 from quintet.interfaces import libraries
 from quintet.interfaces.errors import SceneError
 
@@ -169,6 +172,13 @@ def test_a_calibration_finds_the_stiffness_again(tmp_path, capsys):
     assert set(starts(out).values()) == {1} and len(starts(out)) == 10
 
 
+def test_a_calibrated_number_is_rounded_within_its_range():
+    (span,) = ranges_of({"window": (0.12345678, 0.99999999)})
+    assert _rounded(0.99999998, span) == span.high and _rounded(0.12345679, span) == 0.123457
+    (span,) = ranges_of({"window": (0.12345612, 1.0)})
+    assert _rounded(0.12345613, span) == span.low
+
+
 def test_a_calibration_without_its_library_says_what_to_install(tmp_path, monkeypatch):
     monkeypatch.setattr(libraries, "is_installed", lambda library: False)
     with pytest.raises(SceneError, match=r"needs the library optuna.*quintet\[calibrate\]"):
@@ -191,7 +201,11 @@ def test_wrong_ranges_are_refused(tmp_path, capsys, ranges, message):
 def test_an_ensemble_that_is_none_is_refused(tmp_path):
     pytest.importorskip("optuna")
     (tmp_path / "ensemble.json").write_text(json.dumps({"expectations": []}))
-    with pytest.raises(SceneError, match="it must have two values of curve or more; it has none"):
+    with pytest.raises(SceneError, match="two values of curve or more; it has 0"):
         quintet.calibrate(
             write_all(tmp_path), {STIFFNESS: (60.0, 140.0)}, "curve", ensemble=tmp_path
         )
+    row = {"name": "curve", "deviation": None, "count": 1}
+    (tmp_path / "ensemble.json").write_text(json.dumps({"expectations": [row]}))
+    with pytest.raises(SceneError, match="two values of curve or more; it has 1"):
+        scatter_of(tmp_path, "curve")
