@@ -109,14 +109,15 @@ class StabilityWatch:
                 self.needs_totals = self.needs_totals or not known
                 if not known:
                     continue
-                gain, turnover = work.work_taken - work.work_given, work.turnover
+                gain, turnover, since = work.work_taken - work.work_given, work.turnover, ""
                 if work.gains_of_late():
-                    gain, turnover = work.late, work.late_turnover
+                    gain, turnover, since = work.late, work.late_turnover, " in the last windows"
                 self.unstable.add(name)
                 text = (
                     f"its coupling is unstable: by t = {coupling.windows.time:.4g} s its sides "
-                    f"took {gain:.3g} J more work than they gave, {100.0 * gain / turnover:.0f} % "
-                    f"of the work that went through it; {advice(coupling, name)}"
+                    f"took {gain:.3g} J more work than they gave{since}, "
+                    f"{100.0 * gain / turnover:.0f} % of the work that went through it; "
+                    f"{advice(coupling, name)}"
                 )
                 texts[name] = {"stability": text}
         return texts

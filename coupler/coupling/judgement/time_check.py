@@ -180,8 +180,14 @@ def judged(coupling: Coupling) -> dict[Key, str]:
     return keys
 
 
+def _error_of_load(estimate: FieldError) -> float:
+    """Estimate by which a load is judged: that which is more times its limit."""
+    by_bias = estimate.bias / BIAS_LIMIT >= estimate.local / LOAD_LIMIT
+    return estimate.bias if by_bias else estimate.local
+
+
 def _text(coupling: Coupling, link: str, key: Key, estimate: FieldError) -> str:
-    error = estimate.motion if len(estimate.low) else estimate.bias or estimate.local
+    error = estimate.motion if len(estimate.low) else _error_of_load(estimate)
     inner = coupling.carries(link) or coupling
     window, place = inner.last_dt, f"groups.{inner.plan.name}." if inner.plan.name else ""
     order = 2.0 if inner.plan.scheme == "iterated" else 1.0

@@ -1,10 +1,13 @@
 """The error of a coupling in time, estimated from windows that were stepped twice."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 from quintet.coupler.coupling.judgement.settling_watch import UNSETTLED, Settling
-from quintet.coupler.coupling.judgement.time_error import TimeErrors, is_sampled, sample
+from quintet.coupler.coupling.judgement.time_check import _text
+from quintet.coupler.coupling.judgement.time_error import FieldError, TimeErrors, is_sampled, sample
 
 KEY = ("body", "motion.position")
 
@@ -52,6 +55,18 @@ def test_a_quaternion_and_its_negative_are_the_same():
     error_sample = sample(end, -end, -start, "rotation")
     assert error_sample.difference == 0.0
     assert error_sample.change == pytest.approx(np.sqrt(0.4))
+
+
+def test_a_load_is_said_to_be_wrong_by_the_estimate_that_is_above_its_limit():
+    """The difference is nearly across the load: it has a bias, but far below the limit of one."""
+    estimate = FieldError()
+    estimate.add(1, sample(np.array([[1.0, 0.0]]), np.array([[0.9999, 0.6]]), None, "value"))
+    assert 0.0 < estimate.bias < 1e-3 and estimate.local == pytest.approx(0.6)
+    coupling = SimpleNamespace(
+        carries=lambda link: None, last_dt=1e-3, plan=SimpleNamespace(name="", scheme="serial")
+    )
+    text = _text(coupling, "link", ("body", "load.force"), estimate)
+    assert "by about 60 % or more" in text and text.endswith("Set window to 2e-05 s or less.")
 
 
 def test_estimates_come_back_from_a_snapshot():
