@@ -24,9 +24,12 @@ from quintet.coupler.run.results import BAD, machine
 from quintet.coupler.run.signals import StopRequest
 from quintet.coupler.scene.overrides import assignments, run_arguments
 from quintet.coupler.scene.read import load, parse
+from quintet.coupler.scene.scene import Scene
+from quintet.coupler.study.run_hash import run_hash
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.serving.process import STARTER
 
+HASH = "run "  # before the hash, in the log
 GRACE = 10.0  # s for a run to end after SIGTERM
 FOREVER = float("inf")
 
@@ -42,20 +45,24 @@ class ChildRun:
     transport: str
     stop: Callable[[], bool]  # whether to end the run early
     force: bool = False  # replace former runs
+    hashed: bool = False  # the log begins with the run's hash, by which `earlier` knows it
 
     @classmethod
     def of(cls, options: argparse.Namespace, stop: StopRequest, transport: str = "") -> "ChildRun":
         """Take scene and overrides from the command line; its transport takes precedence."""
         asked = (options.scene, options.preset, options.settings, options.swap)
         again = options.force or getattr(options, "keep", False)
-        return cls(*asked, options.transport or transport, stop, again)
+        return cls(*asked, options.transport or transport, stop, again, hashed=True)
 
     def run(self, settings: dict[str, Any], folder: Path, seconds: float = FOREVER) -> Any:
         """Run with these settings; return the results, of status stalled if it timed out."""
         with begin("run", folder.name, [LOG], folder, self.force):
             discard_former(folder)  # the scene and all its variants were checked
-        target = ["--out", str(folder), "--force"]
-        return self._start(self._command(settings, target), folder, "wb", seconds)
+        target, head = ["--out", str(folder), "--force"], ""
+        if self.hashed:
+            with contextlib.suppress(SceneError):  # the run itself says what is wrong
+                head = f"{HASH}{run_hash(self._load(settings))}\n"
+        return self._start(self._command(settings, target), folder, "wb", seconds, head)
 
     def resume(self, settings: dict[str, Any], folder: Path) -> Any:
         """Go on with a run from its last snapshot; of status refused if it has none of use."""
@@ -63,12 +70,16 @@ class ChildRun:
         command = self._command(settings, ["--resume", str(folder)])
         return self._start(command, folder, "ab", FOREVER)
 
-    def _start(self, command: list[str], folder: Path, mode: str, seconds: float) -> Any:
+    def _start(
+        self, command: list[str], folder: Path, mode: str, seconds: float, head: str = ""
+    ) -> Any:
         """Run a command in a process of its own, its output in the log; return the results.
 
         They have the exit status of the process, that of a signal negative, under `exit`.
         """
         with open(folder / LOG, mode) as log:
+            log.write(head.encode())
+            log.flush()
             process = subprocess.Popen(
                 command,
                 stdin=subprocess.DEVNULL,
@@ -88,17 +99,18 @@ class ChildRun:
     def earlier(self, settings: dict[str, Any], folder: Path) -> Any:
         """Results of the same run, done in an earlier series; None if there are none.
 
-        It must be of the scene as it is read now, on this machine with these versions.
+        It must be of the scene and its files as they are read now, on this machine with these
+        versions.
         """
         if not (folder / NAME).is_file():
             return None
         run = results(folder)
-        asked = (self.scene, self.preset, self._overrides(settings), self.swaps, self.transport)
         try:
-            scene = load(*asked)
+            scene = self._load(settings)
         except SceneError:  # the scene has changed, and refuses now what it took before
             return None
         same = parse(folder / SCENE) == scene.resolved
+        same = same and _hash_in(folder / LOG) == run_hash(scene)
         if same and scene.beginning:
             # Only scenes that begin from another run load HDF5.
             from quintet.coupler.files.states import hash_of
@@ -106,6 +118,9 @@ class ChildRun:
             same = run.get("begin_from", {}).get("hash") == hash_of(scene.beginning.path)
         done = same and run.get("status") == "done" and run.get("machine") == machine()
         return run if done else None
+
+    def _load(self, settings: dict[str, Any]) -> Scene:
+        return load(self.scene, self.preset, self._overrides(settings), self.swaps, self.transport)
 
     def _overrides(self, settings: dict[str, Any]) -> list[str]:
         return [*self.settings, *assignments(settings)]
@@ -130,6 +145,16 @@ class ChildRun:
             with contextlib.suppress(subprocess.TimeoutExpired):
                 process.wait(0.1)
         return stalled
+
+
+def _hash_in(log: Path) -> str:
+    """Hash of the run with which its log begins; empty where it does not."""
+    try:
+        with open(log, encoding="utf-8", errors="replace") as file:
+            line = file.readline().rstrip("\n")
+    except OSError:
+        return ""
+    return line.removeprefix(HASH) if line.startswith(HASH) else ""
 
 
 def _results(folder: Path, status: int, stalled: bool) -> Any:

@@ -7,12 +7,17 @@ import sys
 import time
 
 import pytest
+import tomli_w
 from spring_scene import command, command_json, write
 from started import write_scene
 
+from quintet.coupler.run.results import machine
+from quintet.coupler.scene.read import load
 from quintet.coupler.scene.study_table import Refinement
+from quintet.coupler.study.child_run import HASH, ChildRun
 from quintet.coupler.study.conclusion import conclude, shares_at
 from quintet.coupler.study.row import row_of
+from quintet.coupler.study.run_hash import run_hash
 from quintet.coupler.study.study import recommendation
 
 REFINEMENT = """
@@ -25,6 +30,18 @@ PLAIN = """
 [[study]]
 label = "as it is"
 settings = {}
+"""
+CURVE = """
+[[expect]]
+name = "curve"
+component = "spring"
+field = "motion.position"
+axis = 0
+measure = "rms"
+csv = "cosine.csv"
+within = 0.05
+unit = "m"
+source = "cos(10 t)"
 """
 STEPS = (1 / 64, 1 / 128, 1 / 256)  # lengths that windows which follow the state can have
 
@@ -286,6 +303,21 @@ def test_a_study_keeps_what_was_done_of_the_same_scene_alone(tmp_path, capsys):
     write(tmp_path, refinements(*STEPS), within=1e-3)
     command_json("study", path, "--keep")
     assert "kept" not in capsys.readouterr().out
+
+
+def test_a_run_is_kept_only_with_the_files_that_its_scene_names(tmp_path):
+    path = write(tmp_path, CURVE)
+    reference, folder = tmp_path / "cosine.csv", tmp_path / "run"
+    reference.write_text("t_s,x_m\n0,1\n1,-0.84\n")
+    folder.mkdir()
+    child, scene = ChildRun(str(path), "", [], [], "", lambda: False), load(str(path))
+    (folder / "scene.toml").write_text(tomli_w.dumps(scene.resolved))
+    (folder / "results.json").write_text(json.dumps({"status": "done", "machine": machine()}))
+    assert child.earlier({}, folder) is None, "of a run without a hash nothing is known"
+    (folder / "run.log").write_text(f"{HASH}{run_hash(scene)}\nwhat it printed\n")
+    assert child.earlier({}, folder)["status"] == "done"
+    reference.write_text("t_s,x_m\n0,1\n1,-0.83\n")
+    assert child.earlier({}, folder) is None
 
 
 def test_a_window_is_never_longer_than_the_step_it_is_made_from(tmp_path):
