@@ -9,6 +9,7 @@ from quintet.coupler.report.comparison import shortened
 from quintet.coupler.report.panels import can_draw, curve_panels, save
 
 RUN, INTERVAL, BEST = "tab:blue", "tab:orange", "tab:red"
+ENDS = {"below": "lower", "above": "upper"}
 Summary = Mapping[str, Any]
 
 
@@ -18,23 +19,24 @@ def sentences(summary: Summary) -> Iterator[str]:
     known = sum(row.get("misfit") is not None for row in rows)
     yield f"{known} of {len(rows)} runs have a misfit, {len(summary['failed'])} failed"
     if not summary["keys"]:
-        yield f"nothing fits: no run has a value of {summary['to']}"
+        yield f"no run has a value of {summary['to']}: nothing can be calibrated"
         return
     misfit, unit = summary["misfit"], summary["unit"]
     yield f"least misfit of {summary['to']}: {misfit:.4g} {unit}"
     for name, key in summary["keys"].items():
         yield f"{name} = {key['best']:.4g}, {_interval(key)}"
     yield (
-        f"interval: where the misfit stays below {misfit + summary['rise']:.4g} {unit}, its least "
-        f"plus {summary['rise']:.4g} {unit}, {summary['rise_from']}"
+        f"interval: where the misfit stays below {misfit + summary['rise']:.4g} {unit}, which is "
+        f"{summary['rise']:.4g} {unit} ({summary['rise_from']}) above its least"
     )
 
 
 def _interval(key: Mapping[str, Any]) -> str:
     """Write an interval, and at which end it is open."""
     text = f"between {key['low']:.4g} and {key['high']:.4g}"
-    ends = [end for end in ("below", "above") if key[f"open_{end}"]]
-    return f"{text} (open {' and '.join(ends)}: the runs end there)" if ends else text
+    ends = [end for side, end in ENDS.items() if key[f"open_{side}"]]
+    known = "the misfit of the last run there is still below the limit"
+    return f"{text} ({' and '.join(ends)} end not known: {known})" if ends else text
 
 
 def draw(summary: Summary, out: Path) -> Path | None:

@@ -77,7 +77,7 @@ def error_bar_notes(run: Mapping[str, Any]) -> str:
     if not bars:
         return ""
     text = f"Error bars: from {len(bars['windows'])} of {run.get('windows', 0)} windows"
-    return f"{text}; no more, as {bars['skipped']}" if bars["skipped"] else text
+    return f"{text}; then sampling ended, for {bars['skipped']}" if bars["skipped"] else text
 
 
 def met(outcome: Mapping[str, Any]) -> Text:

@@ -97,8 +97,8 @@ def _verdict(
         return {"verdict": PASSES, "cause": cause}
     if base is not None and (base_distance is None or base_distance > 1.0):
         cause = (
-            "the preset alone does not meet it, so the settings show nothing. Choose another "
-            "preset, or none."
+            "the preset does not meet it without the settings of the control either, so they show "
+            "nothing. Choose another preset, or none."
         )
         return {"verdict": BASE_REJECTED, "cause": cause}
     return {"verdict": REJECTED, "cause": ""}

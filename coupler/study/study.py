@@ -188,8 +188,8 @@ def print_summary(summary: Row) -> None:
     screen.print(costs_and_errors(rows))
     if any(row.get("compared_with") for row in rows):
         screen.print(
-            "no expectations: errors are against the finest refinement, over how far its fields "
-            "move"
+            "no expectations: errors are against the finest refinement, relative to the rms "
+            "variation of its fields"
         )
     if summary["kinds"]:
         screen.print(orders(summary["kinds"]))
@@ -226,7 +226,7 @@ def _wanted_words(wanted: Row) -> list[str]:
     words = []
     if wanted["left_out"]:
         names = ", ".join(wanted["left_out"])
-        words.append(f"left out, as nothing is there that their error is relative to: {names}")
+        words.append(f"left out, for their reference is 0 and they have no relative_to: {names}")
     if best := wanted.get("measured"):
         cost = f"{best['cpu']:.3g} s of processor time"
         error = f"{100.0 * best['relative']:.3g} %"
@@ -234,8 +234,8 @@ def _wanted_words(wanted: Row) -> list[str]:
                 f"delivers it (error {error}, {cost})"]  # fmt: skip
     if offer := wanted.get("extrapolated"):
         values = ", ".join(assignments(offer["settings"]))
-        return [*words, f"recommended for {percent}: none that was measured. EXTRAPOLATED from "
-                f"{offer['from']} ({offer['kind']}), not measured: {values}; predicted error "
+        return [*words, f"recommended for {percent}: none that was run. EXTRAPOLATED from "
+                f"{offer['from']} ({offer['kind']}), not run: {values}; predicted error "
                 f"{100.0 * offer['relative']:.3g} %, predicted {offer['cpu']:.3g} s of processor "
                 "time"]  # fmt: skip
     return [*words, f"recommended for {percent}: none; {wanted['reason']}"]

@@ -134,7 +134,7 @@ def extrapolated_settings(
     for path, last in finest.items():
         value = _continued(second.get(path), last, steps)
         if value is None or (path.startswith(FIXED) and value != last):
-            return f"it cannot be told how {path} goes on"
+            return f"{path} cannot be continued from its last two values"
         settings[path] = value
     return settings
 

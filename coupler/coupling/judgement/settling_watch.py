@@ -148,7 +148,7 @@ def _swings(place: Key, settling: Settling, relaxation: float) -> str:
 def _unsettled(place: Key, settling: Settling, windows: int) -> str:
     _, name, key = place
     return (
-        f"{name}.{key} has not settled after {windows} windows: over the last of them its partner "
-        f"lagged {100.0 * settling.distance:.0f} % of its range behind it. Run more windows, "
+        f"{name}.{key} has not settled after {windows} windows: what its partner has got is still "
+        f"{100.0 * settling.distance:.0f} % of its range away from it. Run more windows, "
         "shorter ones or for longer, or raise relaxation of the link."
     )

@@ -196,6 +196,6 @@ def _require_undone(coupling: Coupling, before: Mapping[str, Fields]) -> None:
                 raise ComponentFailed(
                     name,
                     participant.window,
-                    f"load must bring back what save gave; {key} differs after a window was "
+                    f"load must restore what save returned; {key} differs after a window was "
                     "undone. Run quintet conform on its kind.",
                 )

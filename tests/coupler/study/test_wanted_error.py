@@ -116,6 +116,6 @@ def test_settings_go_on_as_powers_of_the_size():
 )
 def test_settings_that_have_no_rule_are_not_extrapolated(coarse, fine):
     message = extrapolated_settings({"x": coarse}, {"x": fine}, 1.0)
-    assert message == "it cannot be told how x goes on"
+    assert message == "x cannot be continued from its last two values"
     message = extrapolated_settings({"expect.0.value": 2.0}, {"expect.0.value": 1.0}, 1.0)
-    assert message == "it cannot be told how expect.0.value goes on"
+    assert message == "expect.0.value cannot be continued from its last two values"
