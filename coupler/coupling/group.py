@@ -24,7 +24,7 @@ from quintet.coupler.coupling.schedule import (
     Window,
 )
 from quintet.coupler.coupling.schemes import advance
-from quintet.coupler.coupling.windows import Windows
+from quintet.coupler.coupling.windows import Windows, whole_windows
 from quintet.interfaces.component import Array, Fields
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.serving.inputs import Inputs
@@ -48,13 +48,16 @@ class Group:
     def stable(self) -> float:
         """See `Member.stable`: its own longest window, or what its members allow."""
         window = self.coupling.plan.window
-        return self.coupling.allowed() if window == "auto" else window
+        return self.coupling.stable() if window == "auto" else window
 
     def start(self, coupling: Coupling, window: Window, inputs: dict[str, WindowInputs]) -> None:
         """See `Member.start`."""
-        self._dt, self._taken = window.dt, set(inputs)
-        for name, arrived in inputs.items():
-            self.inputs[name].arrive(arrived.fields, arrived.ends, window.dt)
+        self._dt, self._taken = window.dt, set()
+        for name in self.components:
+            arrived = coupling.with_outside(name, inputs.get(name) or WindowInputs())
+            if arrived.fields:
+                self._taken.add(name)
+                self.inputs[name].arrive(arrived.fields, arrived.ends, window.dt)
         self._begin(coupling.windows, window)
 
     def _begin(self, outer: Windows, window: Window) -> None:
@@ -64,6 +67,8 @@ class Group:
             mine.tick, mine.end, mine.follows = outer.tick, window.ticks, plan.window == "auto"
             mine.follows = mine.follows or bool(self.coupling.equal)
             mine.length = float("inf") if plan.window == "auto" else plan.window
+            if not mine.follows:  # divided as below, in ticks
+                mine.length = whole_windows(window.dt, mine.length)
             mine.begin()
             return
         assert plan.window != "auto"
@@ -75,6 +80,8 @@ class Group:
             return None
         mine, inputs = self.coupling.windows, self.inputs[name]
         begin, end = mine.time, mine.time_after
+        if mine.now + mine.length_now >= mine.end:
+            end = self._dt  # to the bit: a flag holds at the end, not before
         outside = WindowInputs()
         for key, rate in inputs.rate.items():
             outside.fields[key] = rate * (end - begin)
@@ -109,7 +116,8 @@ class Group:
     def keep(self, depth: int) -> None:
         """See `Member.keep`."""
         books = {"ledger": self.coupling.ledger.save(), "log": self._log_sizes()}
-        self._kept[depth] = {**self.save(), **books}
+        unconverged = self.coupling.costs.unconverged
+        self._kept[depth] = {**self.save(), **books, "unconverged": unconverged}
         for component in self.components.values():
             component.order_keep(depth)
 
@@ -117,6 +125,7 @@ class Group:
         """See `Member.rewind`: the books of its own windows come back too."""
         self.load(self._kept[depth])
         self.coupling.ledger.load(self._kept[depth]["ledger"])
+        self.coupling.costs.unconverged = self._kept[depth]["unconverged"]
         for log, size in self._kept[depth]["log"]:
             log.cut(size)
         for component in self.components.values():
@@ -248,15 +257,15 @@ def _begin(coupling: Coupling, outputs: Mapping[str, Fields]) -> None:
         coupling.outputs[name] = coupling.previous[name] = outputs[name]
         coupling.sent[name] = {}
     exchange = coupling.exchange
-    for member, stepper in coupling.members.items():
+    for stepper in coupling.members.values():
         if not isinstance(stepper, Group):
             continue
         _begin(stepper.coupling, outputs)
         for name in stepper.components:
-            numbers = [
+            numbers = [  # of what comes from beyond the group, and from beyond those around it
                 number
-                for number, (_, taker) in coupling.transfers.items()
-                if taker == member and exchange.transfers[number].taker == name
+                for number, transfer in enumerate(exchange.transfers)
+                if transfer.taker == name and transfer.giver not in stepper.components
             ]
             stepper.inputs[name].arrive(_instants(exchange, name, numbers, outputs), (), 1.0)
 

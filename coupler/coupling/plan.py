@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from types import MappingProxyType
 from typing import Literal, Union
 
 from quintet.coupler.coupling.exchange import Exchange
@@ -84,13 +85,71 @@ class CouplingPlan:
         return is_equal or any(plan.follows(exchange) for plan in self.inner())
 
 
-def mistakes(plan: CouplingPlan, exchange: Exchange) -> list[str]:
-    """Say what the links of a coupling, or of its groups, do not allow."""
+# Whether inputs that are instants hold at a window's end, by component and key.
+AtEnd = Mapping[tuple[str, str], bool]
+
+
+def mistakes(
+    plan: CouplingPlan, exchange: Exchange, beyond: AtEnd = MappingProxyType({})
+) -> list[str]:
+    """Say what the links of a coupling, or of its groups, do not allow.
+
+    `beyond` has the inputs that come from beyond a group.
+    """
     where = f"groups.{plan.name}" if plan.name else "scene"
     wrong = [*_refused_schemes(plan, exchange, where), *_mixed_inputs(plan, exchange, where)]
+    wrong += _carried_twice(plan, exchange)
+    inside = _at_end(plan, exchange)
+    wrong += _mixed_times(inside, beyond, where)
     for inner in plan.inner():
-        wrong += mistakes(inner, exchange)
+        wrong += mistakes(inner, exchange, {**beyond, **inside})
     return list(dict.fromkeys(wrong))
+
+
+def _carried_twice(plan: CouplingPlan, exchange: Exchange) -> Iterator[str]:
+    """Impulses that two links carry from the same items to the same input."""
+    carriers: dict[tuple[str, str, str, str], str] = {}
+    for number in plan.transfers(exchange):
+        transfer, link = exchange.transfers[number], exchange.links[exchange.link_of[number]].name
+        own = {port.name for port in exchange.ports[transfer.giver][1] if port.items == "own"}
+        for read, filled in exchange.sums[number]:
+            if read.partition(".")[0] not in own:
+                continue  # each link has rows of its own
+            place = transfer.giver, read, transfer.taker, filled
+            if place in carriers:
+                yield (
+                    f"link {link}: {transfer.giver}.{read} must reach {transfer.taker}.{filled} "
+                    f"once; link {carriers[place]} brings it already. Remove one of the two."
+                )
+            carriers.setdefault(place, link)
+
+
+def _at_end(plan: CouplingPlan, exchange: Exchange) -> AtEnd:
+    """Inputs that this coupling's own transfers bring."""
+    order = list(plan.members)
+    at_end: dict[tuple[str, str], bool] = {}
+    for number, (giver, taker) in plan.transfers(exchange).items():
+        transfer = exchange.transfers[number]
+        before = order.index(giver) < order.index(taker)
+        known = plan.scheme == "iterated" or (plan.scheme == "serial" and before)
+        for key in transfer.fills:
+            if not exchange.is_impulse(transfer.taker, key):
+                at_end[transfer.taker, key] = known
+    return at_end
+
+
+def _mixed_times(inside: AtEnd, beyond: AtEnd, where: str) -> Iterator[str]:
+    """Inputs of which some rows come from within a group, and some, of another time, do not."""
+    times = {True: "end", False: "beginning"}
+    for component, key in sorted(inside.keys() & beyond.keys()):
+        within, outside = inside[component, key], beyond[component, key]
+        if within != outside:
+            yield (
+                f"{where}: the inputs of {component}.{key.partition('.')[0]} from within the group "
+                f"and from outside it must hold at the same time; found the {times[within]} of "
+                f"a window within it, the {times[outside]} outside. Change the order, or use "
+                "scheme iterated for both."
+            )
 
 
 def _refused_schemes(plan: CouplingPlan, exchange: Exchange, where: str) -> Iterator[str]:

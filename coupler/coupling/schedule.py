@@ -147,14 +147,24 @@ class Coupling:
             return self
         return next((carrier for inner in self._inner() if (carrier := inner.carries(link))), None)
 
-    def allowed(self) -> float:
-        """How long the next window may be where it follows the state [s]."""
+    def stable(self) -> float:
+        """Longest window that the members' states allow [s]; inf if no member limits it."""
         stable = {name: member.stable() for name, member in self.members.items()}
         joined = {name for ends in self.transfers.values() for name in ends}
         steps = [step for name, step in stable.items() if name in joined or not joined]
         equal = [stable[name] for name in stable if name in self.equal]
         length, _ = auto_length(steps, equal)
-        return length if math.isfinite(length) else self.windows.end * self.windows.tick / BLIND
+        return length
+
+    def allowed(self) -> float:
+        """How long the next window may be where it follows the state [s].
+
+        A group that nothing limits steps once in every window of the coupling around it.
+        """
+        length = self.stable()
+        if math.isfinite(length) or self.depth:
+            return length
+        return self.windows.end * self.windows.tick / BLIND
 
     def collect_inputs(
         self, name: str, stepped: Collection[str], window: Window
@@ -173,6 +183,16 @@ class Coupling:
                 inputs.outputs, inputs.sent = self.outputs[taker], dict(self.sent)
                 gathered[taker] = inputs
             return gathered
+
+    def with_outside(self, name: str, inputs: WindowInputs) -> WindowInputs:
+        """Add the inputs of a component that come from beyond this group, if it is one."""
+        if (outside := self.outside(name)) is None:
+            return inputs
+        # Impulses add up whenever they were known; only instants hold at a time.
+        ends = [key for key in inputs.ends if not self.exchange.is_impulse(name, key)]
+        both = WindowInputs(dict(inputs.fields), inputs.deliveries, ends)
+        both.add(outside)
+        return both
 
     def _deliver(self, number: int, is_ahead: bool, window: Window) -> Delivery:
         """Map a transfer over the window of its giver.
@@ -292,7 +312,7 @@ class Coupling:
         self.outputs, self.previous = dict(state["outputs"]), dict(state["previous"])
         self.sent, self.in_transit = dict(state["sent"]), dict(state["in_transit"])
         self.relaxed, self.late = dict(state["relaxed"]), set(state["late"])
-        self.last_dt = state["last_dt"]
+        self.last_dt, self.iterate = state["last_dt"], {}
         self.windows.load(state["windows"])
         self.measure.load(state["measure"])
         if self.plan.scheme == "iterated" and state["acceleration"]:
@@ -316,13 +336,8 @@ class Single:
 
     def start(self, coupling: Coupling, window: Window, inputs: dict[str, WindowInputs]) -> None:
         """See `Member.start`."""
-        self._inputs = inputs.get(self.name) or WindowInputs()
+        self._inputs = coupling.with_outside(self.name, inputs.get(self.name) or WindowInputs())
         fields, ends = self._inputs.fields, self._inputs.ends
-        if (beyond := coupling.outside(self.name)) is not None:
-            fields, ends = dict(fields), list(ends)
-            both = WindowInputs(fields, ends=ends)
-            both.add(beyond)
-            self._inputs = WindowInputs(fields, self._inputs.deliveries, ends)
         steps = int(self.name in coupling.equal)
         self.participant.start(window.dt, fields, ends, totals=window.totals, steps=steps)
 

@@ -78,8 +78,9 @@ class Windows:
 
     def divide(self, whole: float, length: float) -> None:
         """Divide a whole time [s] into the fewest equal windows of at most a length [s]."""
-        count = max(1, math.ceil(whole / length - ROUNDING))
-        self.tick, self.end, self.length, self._fixed = whole / count, count, length, count
+        self.tick = whole_windows(whole, length)
+        count = round(whole / self.tick)
+        self.end, self.length, self._fixed = count, length, count
         self.now, self._first = 0, self.done
 
     def next(self, stable: float) -> int:
@@ -102,9 +103,10 @@ class Windows:
     def _allowed(self, stable: float) -> int:
         """Longest window [ticks]: the one asked for, or as many ticks as are stable."""
         whole = self.end * self.tick
-        if self.length <= stable:
-            return round(whole / math.ceil(whole / self.length - ROUNDING) / self.tick)
-        return rounded(min(stable, whole), self.tick)
+        if self.length <= min(stable, whole):
+            return round(whole_windows(whole, self.length) / self.tick)
+        # Not cut to the end: a group whose windows could be longer makes no sliver before it.
+        return rounded(stable, self.tick) if math.isfinite(stable) else self.end
 
     def _next_fixed(self) -> int:
         if not self._fixed:
@@ -142,6 +144,11 @@ class Windows:
     def load(self, saved: Sequence[int]) -> None:
         """Come back to what was saved."""
         self.now, self.done, self.current, self.calm = (int(number) for number in saved)
+
+
+def whole_windows(whole: float, length: float) -> float:
+    """Length [s] of the fewest equal windows of at most a length [s] in a whole time [s]."""
+    return whole / max(1, math.ceil(whole / length - ROUNDING))
 
 
 def rounded(seconds: float, tick: float) -> int:

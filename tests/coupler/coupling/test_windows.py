@@ -115,6 +115,19 @@ def test_windows_of_a_group_divide_those_around_it():
     assert len(lengths(windows)) == 4 and windows.done == 11
 
 
+@pytest.mark.parametrize("stable", [0.025, 0.5, math.inf])
+def test_windows_of_a_group_that_may_be_longer_are_those_around_it(stable):
+    outer = run_windows(0.48, 0.02, follows=False, exact=True)
+    inner = Windows(outer.tick, 1, follows=True)
+    while not outer.finished:
+        inner.end = outer.next(math.inf)
+        inner.begin()
+        done = inner.done
+        lengths(inner, lambda time: stable)
+        outer.advance(inner.end)
+        assert inner.done == done + 1
+
+
 def test_saved_windows_go_on_alike():
     def stable(time):
         return 0.02 if 0.2 < time < 0.3 else 0.07
