@@ -96,6 +96,27 @@ def test_a_residual_that_does_not_change_is_survived(kind):
     assert np.isfinite(guess[PLACE]).all()
 
 
+def test_aitken_goes_on_after_a_residual_that_turned_by_a_right_angle():
+    """x̃ = x + b - A x, where A turns by a right angle: Aitken's next factor would be 0."""
+    acceleration, turn = make(settings("aitken"), is_impulse), np.array([[0.0, 1.0], [-1.0, 0.0]])
+    guess, changes = {PLACE: np.zeros(2)}, []
+    acceleration.begin_window(1.0)
+    for _ in range(4):
+        former = guess[PLACE]
+        answer = {PLACE: former + np.array([1.0, 0.0]) - turn @ former}
+        guess = acceleration.next(guess, answer, {PLACE: 1e-9})
+        changes.append(norm(guess[PLACE] - former))
+    assert min(changes) > 0.0
+
+
+def test_quasi_newton_relaxes_where_no_column_says_anything():
+    acceleration, guess = make(settings("iqn-ils", relaxation=0.25), is_impulse), np.zeros(2)
+    acceleration.begin_window(1.0)
+    for number in range(3):
+        guess = acceleration.next({PLACE: guess}, {PLACE: guess + 1.0}, {PLACE: 1e-9})[PLACE]
+        np.testing.assert_array_equal(guess, 0.25 * (number + 1))
+
+
 @pytest.mark.parametrize("kind", ALL)
 def test_what_is_at_rest_or_empty_is_left_alone(kind):
     acceleration = make(settings(kind), is_impulse)

@@ -41,6 +41,22 @@ def test_agreement_is_asked_for_relative_to_the_largest_norm_so_far():
     assert agrees(measure, {FORCE: 0.0}, {FORCE: np.zeros(1)})
 
 
+def test_a_guess_that_overshot_sets_no_floor():
+    measure = ConvergenceMeasure(1e-6, {}, is_impulse)
+    assert not agrees(measure, {FORCE: 9e8}, {FORCE: np.array([1e9])})
+    assert not agrees(measure, {FORCE: 0.5}, {FORCE: np.array([1.5])})
+    assert agrees(measure, {FORCE: 1e-7}, {FORCE: np.array([1.5])})
+
+
+@pytest.mark.filterwarnings("ignore:overflow")
+def test_numbers_too_large_for_a_norm_have_not_converged():
+    measure = ConvergenceMeasure(1e-6, {}, is_impulse)
+    for size in (1e155, 1e300):
+        assert not converged(
+            measure.compare({FORCE: np.array([-size])}, {FORCE: np.array([size])}, 1.0)
+        )
+
+
 def test_a_short_window_is_measured_as_a_long_one():
     """Impulses shrink with the window; their rates, floors and shares do not."""
     measures = [ConvergenceMeasure(1e-6, {"cube.load.torque": 0.02}, is_impulse) for _ in range(2)]
@@ -73,7 +89,7 @@ def test_what_was_guessed_of_what_is_at_rest_has_not_converged():
 
 def test_the_measure_goes_on_where_it_was_saved():
     measure = ConvergenceMeasure(1e-6, {}, is_impulse)
-    measure.compare({FORCE: np.ones(3)}, {FORCE: np.full(3, 0.1)}, 0.1)
+    measure.compare({FORCE: np.full(3, 0.1)}, {FORCE: np.full(3, 0.1)}, 0.1)
     restored = ConvergenceMeasure(1e-6, {}, is_impulse)
     restored.load(measure.save())
     assert restored.largest == measure.largest == {FORCE: pytest.approx(3.0**0.5)}

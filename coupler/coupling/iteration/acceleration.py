@@ -100,8 +100,9 @@ class Aitken:
         if self._last is not None:
             change = weights * (residual - self._last)
             square = dot(change, change)
-            if square > 0.0:
-                self.factor *= -dot(weights * self._last, change) / square
+            factor = -self.factor * dot(weights * self._last, change) / square if square else 0.0
+            if factor:  # with 0 no guess would ever change again
+                self.factor = factor
         self._last = residual
         return _relaxed(guess, result, self.factor)
 
@@ -155,6 +156,8 @@ class IqnIls:
         factors, is_used = filtered_least_squares(scaled, -weights * residual, self.limit)
         change = residual + combination(factors, self.found_changes)
         self._keep(is_used.tolist())
+        if not self.ages:
+            return _relaxed(guess, result, self.relaxation)
         moved = self.scaling.fields(change, guess)
         return {key: guess[key] + moved[key] for key in guess}
 

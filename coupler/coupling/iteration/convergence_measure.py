@@ -10,7 +10,7 @@ from quintet.coupler.coupling.iteration.residual_scaling import Guess, Key
 from quintet.interfaces.component import Array, Fields
 from quintet.interfaces.sums import norm
 
-FLOOR = 1e-3  # of the largest norm so far: below it no agreement is asked for
+FLOOR = 1e-3  # of the largest norm that agreed so far: below it no agreement is asked for
 # Of the largest norm of all fields, in SI: below it there is only rounding, as in the torque on a
 # body that water pushes evenly.
 ROUNDING = 1e-12
@@ -26,8 +26,8 @@ class Residual:
 
     @property
     def converged(self) -> bool:
-        """Whether the field agrees."""
-        return self.norm <= self.allowed
+        """Whether the field agrees; numbers too large for a norm never do."""
+        return self.norm <= self.allowed < math.inf
 
 
 class ConvergenceMeasure:
@@ -50,24 +50,25 @@ class ConvergenceMeasure:
         is_impulse: Callable[[str, str], bool],
     ) -> None:
         self.tolerance, self.absolute, self.is_impulse = tolerance, absolute, is_impulse
-        self.largest: dict[Key, float] = {}  # norms so far
+        self.largest: dict[Key, float] = {}  # norms so far, of repetitions that agreed
 
     def compare(self, guess: Guess, result: Guess, length: float) -> dict[Key, Residual]:
         """Residual of each field, after one repetition of a window of a length [s]."""
         spans = {key: length if self.is_impulse(*key) else 1.0 for key in result}
         norms = {key: norm(array) / spans[key] for key, array in result.items()}
-        for key, size in norms.items():
-            self.largest[key] = max(self.largest.get(key, 0.0), size)
         rounding = ROUNDING * max(norms.values(), default=0.0)
         residuals = {}
         for key in result:
-            least = max(norms[key], FLOOR * self.largest[key])
+            least = max(norms[key], FLOOR * self.largest.get(key, 0.0))
             lack = norm(result[key] - guess[key]) / spans[key]
             mean = self.absolute.get(".".join(key), 0.0)
             wide = mean * math.sqrt(result[key].size)
             allowed = max(self.tolerance * least, wide, rounding)
             share = lack / least if least else math.inf
             residuals[key] = Residual(lack, allowed, share if lack else 0.0)
+        if converged(residuals):  # a guess that overshot sets no floor for the windows after it
+            for key, size in norms.items():
+                self.largest[key] = max(self.largest.get(key, 0.0), size)
         return residuals
 
     def save(self) -> dict[str, Array]:

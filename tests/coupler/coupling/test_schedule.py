@@ -182,3 +182,12 @@ def test_agreement_is_asked_for_relative_to_the_largest_value_so_far():
     assert _agrees(measure, {KEY: np.array([1e-7])}, big)
     assert _agrees(measure, {KEY: np.array([1e-12])}, tiny)  # rounding of what was 1
     assert _agrees(measure, {KEY: np.zeros(1)}, {KEY: np.zeros(1)})
+
+
+def test_what_a_trial_that_failed_had_repeated_is_forgotten():
+    coupling = _coupling([("a", "b"), ("b", "c"), ("c", "a")], "iterated")
+    state, outputs = coupling.save(), dict(coupling.outputs)
+    coupling.iterate = {name: {"out.value": np.full(1, 7.0)} for name in "abc"}
+    coupling.load(state)
+    assert coupling.outputs == outputs
+    assert coupling.iterate == {}
