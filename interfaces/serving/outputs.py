@@ -118,10 +118,11 @@ class Outputs:
             whole = ((0, len(pushed)),)
             shares = self.shares.get(velocity.partition(".")[0], whole)
             done = self.work.setdefault(force, [0.0] * len(shares))
+            span = 1.0 if self.integrals else dt
             for link, (first, stop) in enumerate(shares):
-                done[link] += dt * product(pushed[first:stop], moved[first:stop])
+                done[link] += span * product(pushed[first:stop], moved[first:stop])
             if position:
-                turned = dt * moment(taken[position], outputs[force])
+                turned = span * moment(taken[position], outputs[force])
                 self.moment[force] = self.moment.get(force, np.zeros(3)) + turned
 
     def collect(self, outputs: Fields) -> dict[str, Array]:

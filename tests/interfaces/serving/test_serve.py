@@ -297,3 +297,20 @@ def test_warnings_that_are_no_texts_by_subject_are_refused(monkeypatch):
     monkeypatch.setattr(server.component, "final_warnings", lambda: None)
     with pytest.raises(PortError, match=r"final_warnings\(\) must return .* found NoneType"):
         server.handle(Message({"order": "conclude"}))
+
+
+def test_work_and_moment_of_integrals_are_those_of_their_rates():
+    """What gives integrals over its steps does the same work as what gives rates."""
+    random, dt = np.random.default_rng(3), 0.25
+    force, taken = random.normal(size=(N, 3)), random.normal(size=(2, N, 3))
+    sums = []
+    for is_integral in (False, True):
+        outputs = Outputs((GIVEN,), is_integral)
+        outputs.works = [("push.force", "foot.velocity", "foot.position")]
+        outputs.begin()
+        moved = {"foot.velocity": taken[0], "foot.position": taken[1]}
+        outputs.add({"push.force": force * dt if is_integral else force}, moved, dt)
+        sums.append(outputs.audit())
+    for key, numbers in sums[0].items():
+        np.testing.assert_allclose(sums[1][key], numbers, rtol=1e-14)
+    assert sums[0]["push.force/work"][0] != 0.0
