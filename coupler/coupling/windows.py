@@ -20,6 +20,7 @@ BITS = 4  # significant ones of a length that follows the state
 CALM = 64  # windows that allow a longer one before it is made longer
 SUBCYCLES = 64  # steps of the fastest component in a window, at most, where none is demanded
 ROUNDING = 1e-9  # of a window, by which times may differ
+STRETCH = 0.01  # share by which windows may be longer than asked, to divide a run evenly
 BLIND = 100  # windows of a run in which no component says how far it may step
 
 
@@ -110,7 +111,7 @@ class Windows:
 
     def _next_fixed(self) -> int:
         if not self._fixed:
-            self._fixed = max(1, round(self.end * self.tick / self.length))
+            self._fixed = count_windows(self.end * self.tick, self.length)
         upto = self.end * (self.done - self._first + 1) // self._fixed
         return upto - self.now
 
@@ -163,12 +164,18 @@ def rounded(seconds: float, tick: float) -> int:
     return ticks >> drop << drop
 
 
+def count_windows(end: float, length: float) -> int:
+    """Count the equal windows of a length [s], or up to `STRETCH` longer, until an end [s]."""
+    nearest = max(1, round(end / length))
+    return nearest if end / nearest <= (1.0 + STRETCH) * length else math.ceil(end / length)
+
+
 def run_windows(end: float, length: float, follows: bool, exact: bool) -> Windows:
     """Windows of a whole run to `end` [s]; with `exact` ticks where any part follows the state."""
     if follows or exact:
         tick = math.ulp(end)
         return Windows(tick, round(end / tick), length, follows)
-    windows = max(1, round(end / length))
+    windows = count_windows(end, length)
     return Windows(end / windows, windows, end / windows)
 
 

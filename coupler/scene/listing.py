@@ -12,7 +12,7 @@ from rich.console import Console
 from rich.table import Table
 
 from quintet.coupler.coupling.plan import CouplingPlan
-from quintet.coupler.coupling.windows import auto_length
+from quintet.coupler.coupling.windows import auto_length, count_windows
 from quintet.coupler.measures.advice import sentences
 from quintet.coupler.measures.expectation import ROUNDING, Expectation
 from quintet.coupler.scene.foreign_code import unread_note
@@ -163,7 +163,8 @@ def _windows(scene: Scene, plan: CouplingPlan) -> Iterator[str]:
     elif plan.name:
         windows = f"windows of {plan.window:g} s at most"
     else:
-        windows = f"{max(1, round(scene.file.end / plan.window))} windows of {plan.window:g} s"
+        count = count_windows(scene.file.end, plan.window)
+        windows = f"{count} windows of {scene.file.end / count:g} s"
     yield f"{where}: {members}; {plan.scheme}; {windows}"
     for inner in plan.inner():
         yield from _windows(scene, inner)

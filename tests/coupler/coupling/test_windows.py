@@ -20,9 +20,25 @@ def lengths(windows, stable=lambda time: math.inf, limit=100_000):
 
 @pytest.mark.parametrize("end", [1.0, 0.3, 1.8, 1e-6, 12345.678])
 def test_fixed_windows_are_one_tick_each_and_end_at_the_end(end):
-    windows = run_windows(end, end / 7.3, follows=False, exact=False)
+    windows = run_windows(end, end / 7.05, follows=False, exact=False)
     assert (lengths(windows) == 1).all() and windows.done == 7
     assert windows.time == 7 * (end / 7)
+
+
+@pytest.mark.parametrize(
+    ("end", "length", "count"),
+    [
+        (1.0, 0.67, 2),
+        (0.8, 1.5e-4, 5333),
+        (1.0, 0.5, 2),
+        (1.0, 0.4999, 2),
+        (1.0, 0.49, 3),
+        (1.0, 3.0, 1),
+    ],
+)
+def test_fixed_windows_are_hardly_longer_than_asked(end, length, count):
+    windows = run_windows(end, length, follows=False, exact=False)
+    assert windows.end == count and windows.tick <= 1.01 * length
 
 
 @pytest.mark.parametrize("end", [1.0, 0.3, 1.8, 1e-6, 12345.678])
