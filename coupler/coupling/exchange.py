@@ -276,7 +276,8 @@ class Exchange:
             return parts[0].after[key]
         if not self.is_impulse(taker, key) and self.unit(taker, key) != MASS:
             raise LinkError(
-                f"{taker}.{key}: only forces of several links can be added up; this is a value. "
+                f"{taker}.{key}: inputs of several links can be added up only where they are "
+                "impulses, as forces are; this one is an instant. "
                 f"Join {taker}.{key.partition('.')[0]} once."
             )
         return np.asarray(np.sum([delivery.after[key] for delivery in parts], axis=0))

@@ -135,7 +135,7 @@ class MotionAudit:
         window, span = self._window[name], float(answer["span"])
         if unknown := {*answer["first"], *answer["moved"]} - self._sums[name].keys():
             raise MessageError(
-                f"{name} tells how it was moved by {min(unknown)}, which it never got."
+                f"{name} reports how {min(unknown)} moved it, which it was never sent."
             )
         rates = set(self._fields[name].values())
         gaps = [0.0]

@@ -192,7 +192,7 @@ def _mixed_inputs(plan: CouplingPlan, exchange: Exchange, where: str) -> Iterato
     for (component, key), kinds in sides.items():
         if len(kinds) > 1:
             yield (
-                f"{where}: what {component} takes in {key.partition('.')[0]} must all come from "
-                "components that step before it, or all from ones after it; it comes from both. "
+                f"{where}: the inputs of {component}.{key.partition('.')[0]} must all come from "
+                "components that step before it, or all from ones after it; they come from both. "
                 "Change the order, or use scheme parallel or iterated."
             )

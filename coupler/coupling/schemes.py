@@ -126,8 +126,8 @@ def _at_limit(coupling: Coupling, window: Window, repetition: int) -> None:
         coupling.costs.unconverged += 1
         return
     raise StepError(
-        f"window {window.number}: {coupling.plan.iteration.limit} repetitions must bring the "
-        "components to agreement; they did not. Shorten the window, lower "
+        f"window {window.number} did not converge within {coupling.plan.iteration.limit} "
+        "iterations. Shorten the window, lower "
         "iteration.relaxation, try acceleration iqn-ils, raise iteration.limit, or let "
         "iteration.at_limit be continue."
     )

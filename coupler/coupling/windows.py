@@ -157,8 +157,8 @@ def rounded(seconds: float, tick: float) -> int:
     ticks = int(seconds / tick)
     if ticks < 1:
         raise StepError(
-            f"a window must be at least {tick:.3g} s, the resolution of the run's end; the state "
-            f"allows {seconds:.3g} s. Look at the state."
+            f"the stable step must be at least {tick:.3g} s, the resolution of time in this run; "
+            f"it is {seconds:.3g} s. Look at the state."
         )
     drop = max(0, ticks.bit_length() - BITS)
     return ticks >> drop << drop
@@ -190,13 +190,13 @@ def auto_length(stable: Iterable[float], equal: Iterable[float]) -> tuple[float,
         The same of those whose links demand equal steps.
     """
     if demanded := list(equal):
-        return min(demanded), "the smallest step of what must step equally"
+        return min(demanded), "the smallest stable step of the components that must step equally"
     steps = [step for step in stable if math.isfinite(step)]
     if not steps:
-        return math.inf, f"a {BLIND}th of the run, as no component says how far it may step"
+        return math.inf, f"a {BLIND}th of the run, for no component limits its step"
     if max(steps) > SUBCYCLES * min(steps):
-        return SUBCYCLES * min(steps), f"{SUBCYCLES} of the smallest step"
-    return max(steps), "the largest step of what is joined"
+        return SUBCYCLES * min(steps), f"{SUBCYCLES} times the smallest stable step"
+    return max(steps), "the largest stable step of the linked components"
 
 
 def in_ticks(seconds: float, tick: float) -> int:

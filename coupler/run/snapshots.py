@@ -137,7 +137,7 @@ def _read(path: Path) -> Iterator[h5py.File]:
             yield file
     except UNREADABLE as error:
         raise SceneError(
-            f"snapshot {path.name}: it must have what a run writes into it; it has not "
+            f"snapshot {path.name} is damaged, or no snapshot "
             f"({type(error).__name__}: {error!s:.200}). Remove it, and resume from the one before."
         ) from error
 
@@ -201,7 +201,7 @@ def latest(folder: Path, quietly: bool = False) -> Path:
                 message = f"quintet: {' '.join(wrong)} The run goes on from {path.name}."
                 print(message, file=sys.stderr, flush=True)
             return path
-        wrong.append(f"{path.name} is not as it was written: it was cut or changed.")
+        wrong.append(f"{path.name} is incomplete or was changed: its checksum differs.")
     if wrong:
         raise SceneError(
             f"--resume {folder}: it has no snapshot that can be used. {' '.join(wrong)} Run the "

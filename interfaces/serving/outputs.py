@@ -112,7 +112,8 @@ class Outputs:
             for key in filter(None, (velocity, position)):
                 if key not in taken or len(taken[key]) != len(outputs[force]):
                     raise PortError(
-                        f"{key} must have come, for each item of {force}, whose work it tells."
+                        f"the work of {force} needs a row of {key} for each of its items; found "
+                        f"{len(taken.get(key, ()))} for {len(outputs[force])}."
                     )
             pushed, moved = outputs[force], taken[velocity]
             whole = ((0, len(pushed)),)

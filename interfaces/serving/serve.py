@@ -246,8 +246,8 @@ class Server:
         """Check that the steps which a link demands are stable."""
         if time > left * self.stable() * (1.0 + 1e-9):
             raise StepError(
-                f"{left} step(s) of {time / left:.6g} s are demanded by a link with equal steps; "
-                f"the largest stable one is {self.stable():.6g} s. Shorten the window."
+                f"a link with equal steps requires {left} step(s) of {time / left:.6g} s; the "
+                f"largest stable step is {self.stable():.6g} s. Shorten the window."
             )
         return left
 

@@ -16,7 +16,7 @@ LINKS = [{"kind": "fsi", "between": ["gust", name]} for name in ("one", "two")]
 
 @pytest.mark.parametrize("order", [["one", "gust", "two"], ["two", "gust", "one"]])
 def test_a_serial_order_that_cannot_be_met_is_found_when_the_scene_is_read(tmp_path, order):
-    words = r"what gust takes in surface must all come from components that step before it, or all"
+    words = r"the inputs of gust.surface must all come from components that step before it, or all"
     with pytest.raises(SceneError, match=words):
         laboratory.couple(
             laboratory.scene(tmp_path, TWO_PLATES, LINKS, end=0.1, window=0.02, order=order)

@@ -194,6 +194,6 @@ def _text(coupling: Coupling, link: str, key: Key, estimate: FieldError) -> str:
     shorter = window * (AIM / error) ** (1.0 / order)
     return (
         f"windows of {window:.3g} s are too long: {'.'.join(key)} is wrong by about "
-        f"{100.0 * min(error, 1.0):.0f} % or more of what it changes, estimated from windows in "
-        f"{PIECES} pieces. Set {place}window to {shorter:.1g} s or less."
+        f"{100.0 * min(error, 1.0):.0f} % of its change or more, estimated by windows that were "
+        f"repeated in {PIECES} parts. Set {place}window to {shorter:.1g} s or less."
     )

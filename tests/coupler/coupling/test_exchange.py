@@ -152,7 +152,9 @@ def test_values_of_several_links_cannot_be_added():
     exchange.bind({name: {} for name in ports})
     outputs = {name: {"port.value": np.ones(2)} for name in ("a", "b")}
     exchange.count_rows(outputs)
-    with pytest.raises(LinkError, match="only forces of several links can be added up"):
+    with pytest.raises(
+        LinkError, match="only where they are impulses, as forces are; this one is an instant"
+    ):
         _inputs(exchange, "taker", outputs)
 
 

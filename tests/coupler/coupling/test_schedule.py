@@ -167,7 +167,7 @@ def test_serial_refuses_motion_from_before_and_from_after():
     mixed = [("a", "b"), ("c", "b")]
     serial = _coupling(mixed, "serial")
     (mistake,) = plan.mistakes(serial.plan, serial.exchange)
-    assert "what b takes in in must all come from components that step before it" in mistake
+    assert "the inputs of b.in must all come from components that step before it" in mistake
     assert "Change the order, or use scheme parallel" in mistake
     for scheme in ("parallel", "iterated"):
         coupling = _coupling(mixed, scheme)

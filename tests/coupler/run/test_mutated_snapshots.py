@@ -77,7 +77,7 @@ def test_a_snapshot_whose_bytes_were_changed_is_not_used(killed_folder, tmp_path
         if damaged == data:
             continue
         assert not is_sound(damaged_path)
-        with pytest.raises(SceneError, match="is not as it was written: it was cut or changed"):
+        with pytest.raises(SceneError, match="is incomplete or was changed: its checksum differs"):
             snapshots.latest(tmp_path)
 
 

@@ -205,7 +205,7 @@ def test_a_snapshot_that_was_changed_is_named_and_the_one_before_is_used(
     DAMAGES[damage](last)
     assert status("run", "--resume", copy) == 0
     assert (
-        f"quintet: {last.name} is not as it was written: it was cut or changed. The run goes on "
+        f"quintet: {last.name} is incomplete or was changed: its checksum differs. The run goes on "
         f"from {previous.name}.\n"
     ) in capfd.readouterr().err
     assert same(whole, copy) and not snapshots.snapshots(copy)
@@ -218,7 +218,7 @@ def test_a_run_whose_snapshots_were_all_changed_is_refused(tmp_path, run_folders
         flip_a_bit(path)
     assert status("run", "--resume", copy) == 2
     message = capsys.readouterr().err
-    assert message.count("is not as it was written: it was cut or changed.") == snapshots.KEPT
+    assert message.count("is incomplete or was changed: its checksum differs.") == snapshots.KEPT
 
 
 def test_a_file_that_is_too_short_for_the_snapshot_is_refused(tmp_path, run_folders, capsys):
