@@ -14,6 +14,20 @@ from quintet.interfaces.waited import TRAFFIC, WAITED
 LONGEST = 86400.0
 SOON = 200  # polls, some 50 µs, in which another rank answers that is as far
 OFTEN = 1000  # polls between two looks at the clock
+# What launchers call the number of ranks that they started on this host: MPICH, Open MPI.
+RANKS_HERE = ("MPI_LOCALNRANKS", "OMPI_COMM_WORLD_LOCAL_SIZE")
+
+
+def polls_before_yielding() -> int:
+    """Polls after which a waiting rank yields its core.
+
+    None where more ranks than cores are on this host: the rank that is awaited may need the core.
+    """
+    ranks = max(int(os.environ.get(name, "0")) for name in RANKS_HERE)
+    return 0 if ranks > len(os.sched_getaffinity(0)) else SOON
+
+
+POLLS = polls_before_yielding()
 
 
 def wait(*requests: Any) -> None:
@@ -28,7 +42,7 @@ def wait(*requests: Any) -> None:
     began, spent = time.perf_counter(), time.thread_time()
     while not MPI.Request.Testall(waiting):
         polls += 1
-        if polls > SOON:
+        if polls > POLLS:
             os.sched_yield()
         if polls % OFTEN == 0 and time.perf_counter() - began > LONGEST:
             raise LineError(f"another rank must answer within {LONGEST:g} s; it did not.")
