@@ -83,14 +83,21 @@ def decode(frame: Frame, expected: Shapes | None = None) -> Message:
         _compare(layout.shapes, expected)
     if first + layout.size != len(frame):
         _refuse_size(layout, len(frame) - first)
-    seen = np.frombuffer(memoryview(frame).toreadonly(), np.uint8)  # what holds the frame
+    buffer = _read_only(frame)
     return Message(
         header,
         {
-            key: np.ndarray(shape, dtype, seen, first + start)
+            key: np.ndarray(shape, dtype, buffer, first + start)
             for key, dtype, shape, _, start, _ in layout.places
         },
     )
+
+
+def _read_only(frame: Frame) -> Frame:
+    """Buffer for arrays that stay read-only, whatever flag of them is set; it holds the frame."""
+    if type(frame) is memoryview and type(frame.obj) is bytes:
+        return frame
+    return np.frombuffer(memoryview(frame).toreadonly(), np.uint8)
 
 
 def order_of(frame: Frame) -> str:
@@ -118,7 +125,7 @@ def _header(frame: Frame) -> tuple[dict[str, Any], int]:
     if zlib.crc32(text) != checksum:
         raise MessageError("the header is not as it was sent: its checksum differs.")
     try:
-        header = msgpack.unpackb(text, raw=False)
+        header = msgpack.unpackb(text)
     except (ValueError, msgpack.exceptions.UnpackException) as error:
         raise MessageError(f"the header is not valid msgpack: {error}") from error
     if not isinstance(header, dict):

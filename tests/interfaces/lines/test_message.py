@@ -61,7 +61,16 @@ def test_a_header_comes_back_and_arrays_are_read_only():
         message.fields["a"][0] = 1.0
 
 
-@pytest.mark.parametrize("kind", [bytes, bytearray, lambda frame: np.frombuffer(frame, np.uint8)])
+@pytest.mark.parametrize(
+    "kind",
+    [
+        bytes,
+        bytearray,
+        lambda frame: memoryview(bytes(frame)),
+        lambda frame: memoryview(frame).toreadonly(),
+        lambda frame: np.frombuffer(frame, np.uint8),
+    ],
+)
 def test_no_array_of_a_message_can_be_made_writable(kind):
     array = decode(kind(encode({}, {"a": np.zeros(3)}, None))).fields["a"]
     with pytest.raises(ValueError, match="WRITEABLE"):
