@@ -47,18 +47,19 @@ def encode(
     scratch: bytearray | None,
     limit: int = UNLIMITED,
     room: int = 0,
+    **stamp: Any,
 ) -> bytearray:
     """Pack a message into one frame; `scratch` is reused when it has the right length.
 
     A frame of more than `limit` bytes is refused before any memory is taken for it. `room` bytes
-    are left free behind it.
+    are left free behind it. `stamp` has what the line adds to the header.
     """
     try:
         layout = lay_out(tuple([(key, a.dtype, a.shape) for key, a in fields.items()]))
     except AttributeError:
         _refuse_no_array(fields)
         raise
-    packed = PACKER.pack({**header, "arrays": layout.packed})
+    packed = PACKER.pack({**header, **stamp, "arrays": layout.packed})
     first = aligned(PREFIX.size + len(packed))
     total = first + layout.size
     if total > limit:

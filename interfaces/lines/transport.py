@@ -112,8 +112,9 @@ class FramedLine(ABC):
 
     def send(self, header: Mapping[str, Any], fields: Fields) -> None:
         """See `Line.send`."""
-        stamped = {**header, "run": self.run, "from": self.name, "seq": self._sent}
-        self._scratch = encode(stamped, fields, self._scratch, self.limit, self.room)
+        self._scratch = encode(
+            header, fields, self._scratch, self.limit, self.room, run=self.run, seq=self._sent
+        )
         self._sent += 1
         self._pause = self.repeat_after
         self._repeat_at = time.monotonic() + self._pause
