@@ -128,15 +128,13 @@ class Outputs:
 
     def collect(self, outputs: Fields) -> dict[str, Array]:
         """Return the fields to send: instants as they are now, impulses summed over the window."""
-        missing = [key for key in self.shapes if key not in outputs]
-        if missing:
-            raise PortError(
-                f"give() must give every field that is wanted; {missing[0]} is missing."
-            )
-        return {
-            key: outputs[key] if key not in self.through else self._summed(key, outputs[key])
-            for key in self.shapes
-        }
+        fields: dict[str, Array] = {}
+        for key in self.shapes:
+            if key not in outputs:
+                raise PortError(f"give() must give every field that is wanted; {key} is missing.")
+            output = outputs[key]
+            fields[key] = self._summed(key, output) if key in self.through else output
+        return fields
 
     def _summed(self, key: str, like: Array) -> Array:
         """An impulse summed over the window; zeros before the first step."""
@@ -144,10 +142,14 @@ class Outputs:
 
     def audit(self) -> Sums:
         """Sum every impulse over the items, with its work and moment where they are known."""
-        sums = {key: column_sums(array) for key, array in self.total.items()}
-        sums |= {f"{key}/size": [size(array)] for key, array in self.total.items()}
-        sums |= {f"{key}/work": work for key, work in self.work.items()}
-        return sums | {f"{key}/moment": turn.tolist() for key, turn in self.moment.items()}
+        sums: Sums = {}
+        for key, array in self.total.items():
+            sums[key], sums[f"{key}/size"] = column_sums(array), [size(array)]
+        for key, work in self.work.items():
+            sums[f"{key}/work"] = work
+        for key, turn in self.moment.items():
+            sums[f"{key}/moment"] = turn.tolist()
+        return sums
 
 
 class InputAudit:
