@@ -20,6 +20,8 @@ from quintet.interfaces import rotation
 from quintet.interfaces.component import Array, Fields, Port
 from quintet.interfaces.errors import PortError
 
+FLOAT = np.dtype(float)
+
 
 class KnownEnds(NamedTuple):
     """An instant and its rate at the beginning of a window, and at its end where it is known."""
@@ -52,8 +54,8 @@ class Inputs:
                 known = ", ".join(self.fields) or "nothing"
                 raise PortError(f"field {key} is not taken here; the ports take {known}.")
             self._check(key, array)
-            if array.dtype != float:
-                array = array.astype(float)
+            if array.dtype != FLOAT:
+                array = array.astype(FLOAT)
             if key in self.impulses:
                 self.rate[key] = array / window
             elif key in ends and key in self.start:
@@ -76,11 +78,12 @@ class Inputs:
         """Inputs for the step from `begin` to `end`, both in s from the window's beginning."""
         middle = 0.5 * (begin + end)
         values = dict(self.rate)
+        moves = {rate: key for key, rate in self.rates.items() if key in self.start}
         for key in self.start:
-            values[key] = self._at(key, middle, window)
-        for key, rate in self.rates.items():
-            if key in self.start and rate in self.start:
-                values[rate] = self._mean_rate(key, rate, begin, end, window)
+            if key in moves:
+                values[key] = self._mean_rate(moves[key], key, begin, end, window)
+            else:
+                values[key] = self._at(key, middle, window)
         for array in values.values():
             array.flags.writeable = False
         return values
