@@ -3,7 +3,6 @@
 import math
 import reprlib
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
 from typing import Any
 
 from quintet.interfaces.component import Field, Fields
@@ -36,16 +35,16 @@ def _is_time(value: Any) -> bool:
 
 
 def _is_list(value: Any) -> bool:
-    return isinstance(value, list) and NUMBERS.issuperset(map(type, value))
+    return type(value) is list and NUMBERS.issuperset(map(type, value))
 
 
 def _is_sums(value: Any) -> bool:
-    return value == {} or (isinstance(value, dict) and all(map(_is_list, value.values())))
+    return type(value) is dict and (not value or all(map(_is_list, value.values())))
 
 
 def _is_motion(value: Any) -> bool:
     return (
-        isinstance(value, dict)
+        type(value) is dict
         and value.keys() == MOTION
         and _is_sums(value["first"])
         and _is_sums(value["moved"])
@@ -133,13 +132,21 @@ def check_outputs(fields: Fields, wanted: Iterable[str], gives: Mapping[str, Fie
             )
 
 
-@dataclass(frozen=True, slots=True)
 class AnswerSums:
-    """Fields of a component of whose sums its answers tell."""
+    """Sums of which the answers of a component tell: of the fields that it takes and gives.
 
-    takes: Mapping[str, Field]
-    gives: Mapping[str, Field]
-    links: Mapping[str, int]  # force given -> links among which its work is divided
+    Parameters
+    ----------
+    takes, gives : mapping of fields
+        By their keys ``"port.field"``.
+    links : mapping of int
+        Force given -> links among which its work is divided.
+    """
+
+    def __init__(
+        self, takes: Mapping[str, Field], gives: Mapping[str, Field], links: Mapping[str, int]
+    ) -> None:
+        self._taken, self._given = _lengths(takes, links), _lengths(gives, links)
 
     def check(self, answer: Message) -> None:
         """Refuse sums of fields that are not there, or of another length than the field's."""
@@ -147,24 +154,25 @@ class AnswerSums:
         for key, array in answer.fields.items():
             if array.dtype.kind not in "fiu":
                 raise MessageError(f"the answer to advance: {key} must be numbers.")
-        for place, known in (
-            ("sent", self.gives),
-            ("received", self.takes),
-            ("applied", self.takes),
-        ):
-            self._check(place, header[place], known)
+        _check_lengths("sent", header["sent"], self._given)
+        for place in ("received", "applied"):
+            _check_lengths(place, header[place], self._taken)
         for place in ("first", "moved"):
-            self._check(place, header["inputs"][place], self.takes)
+            _check_lengths(place, header["inputs"][place], self._taken)
 
-    def _check(
-        self, place: str, sums: Mapping[str, list[float]], known: Mapping[str, Field]
-    ) -> None:
-        for key, numbers in sums.items():
-            name, _, of = key.partition("/")
-            whole = math.prod(known[name].shape) if name in known else -1
-            right = {"": whole, "size": 1, "moment": 3, "work": self.links.get(name, -1)}
-            if name not in known or len(numbers) != right.get(of, -1):
-                raise MessageError(
-                    f"the answer to advance: {reprlib.repr(key)} of {len(numbers)} numbers is no "
-                    f"sum of what was {place}."
-                )
+
+def _lengths(fields: Mapping[str, Field], links: Mapping[str, int]) -> dict[str, int]:
+    """Count the numbers of each sum of which an answer may tell."""
+    lengths = {f"{key}/work": links[key] for key in fields if key in links}
+    for key, field in fields.items():
+        lengths |= {key: math.prod(field.shape), f"{key}/size": 1, f"{key}/moment": 3}
+    return lengths
+
+
+def _check_lengths(place: str, sums: Mapping[str, list[float]], lengths: Mapping[str, int]) -> None:
+    for key, numbers in sums.items():
+        if len(numbers) != lengths.get(key):
+            raise MessageError(
+                f"the answer to advance: {reprlib.repr(key)} of {len(numbers)} numbers is no "
+                f"sum of what was {place}."
+            )
