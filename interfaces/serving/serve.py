@@ -161,7 +161,8 @@ class Server:
         window = float(header["dt"])
         require_finite(message.fields, f"window {header['window']}, received")
         self.inputs.arrive(message.fields, header["ends"], window)
-        received = {k: column_sums(v) for k, v in message.fields.items() if self._integral(k)}
+        impulses = self.inputs.impulses
+        received = {key: column_sums(v) for key, v in message.fields.items() if key in impulses}
         steps, applied, outputs = self.advance(window, int(header.get("steps", 0)))
         self.component.check()
         fields = self.outputs.collect(outputs)
@@ -172,10 +173,11 @@ class Server:
             "received": received,
             "applied": applied,
             "inputs": self.input_audit.audit(),
-            "totals": self._totals() if header.get("totals") else None,
-            "busy": time.perf_counter() - began,
-            "cpu": time.process_time() - spent,
         }
+        if header.get("totals"):
+            answer["totals"] = self._totals()
+        answer["busy"] = time.perf_counter() - began
+        answer["cpu"] = time.process_time() - spent
         if is_trial(message):
             return answer, fields
         if notes := self._notes():
@@ -198,9 +200,6 @@ class Server:
         notes = [str(note) for note in self.component.notes()]
         reported, self._reported = self._reported, len(notes)
         return notes[reported:]
-
-    def _integral(self, key: str) -> bool:
-        return key in self.inputs.impulses
 
     def advance(self, window: float, count: int = 0) -> tuple[int, Sums, Fields]:
         """Step through a window [s]; tell the steps, the impulses applied, the last outputs.
