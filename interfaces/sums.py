@@ -20,7 +20,10 @@ def column_sums(array: Array) -> list[float]:
     rows = array if array.ndim == 2 else array.reshape(len(array), math.prod(array.shape[1:]))
     # A product with ones sums columns several times faster than a reduction along rows.
     if rows.size <= BLOCK:
-        return (ONES[: len(rows)] @ rows).tolist()
+        ones = ONES[: len(rows)]
+        # ``dot`` takes half the time, with the same bits except of one row and of rows with gaps.
+        is_same = rows.flags.c_contiguous and len(rows) > 1
+        return (ones.dot(rows) if is_same else ones @ rows).tolist()
     total = np.zeros(rows.shape[1])
     for part in _blocks(len(rows), rows.shape[1]):
         block = rows[part]
