@@ -120,9 +120,9 @@ def _header(frame: Frame) -> tuple[dict[str, Any], int]:
         raise MessageError(f"a message must begin with {MAGIC!r}; found {magic!r}.")
     if total != len(frame):
         raise MessageError(f"the message says it has {total} bytes; {len(frame)} arrived.")
-    if size > min(HEADER_LIMIT, total - PREFIX.size):
+    if size > HEADER_LIMIT or size > total - PREFIX.size:
         raise MessageError(f"a header of {size} bytes does not fit a message of {total} bytes.")
-    text = memoryview(frame)[PREFIX.size : PREFIX.size + size]
+    text = frame[PREFIX.size : PREFIX.size + size]
     if zlib.crc32(text) != checksum:
         raise MessageError("the header is not as it was sent: its checksum differs.")
     try:

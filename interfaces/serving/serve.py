@@ -197,9 +197,9 @@ class Server:
 
     def _notes(self) -> list[str]:
         """Notes of the component that were not yet told."""
-        notes = [str(note) for note in self.component.notes()]
+        notes = self.component.notes()
         reported, self._reported = self._reported, len(notes)
-        return notes[reported:]
+        return [str(note) for note in notes[reported:]]
 
     def advance(self, window: float, count: int = 0) -> tuple[int, Sums, Fields]:
         """Step through a window [s]; tell the steps, the impulses applied, the last outputs.
@@ -356,7 +356,8 @@ def answer(server: Server, line: Line, message: Message) -> bool:
     """Handle one order and send the answer; tell whether to go on."""
     try:
         header, fields = server.handle(message)
-        line.send({"order": "done", **header}, fields)
+        header["order"] = "done"
+        line.send(header, fields)
     except LineError:
         raise
     except (Exception, SystemExit) as error:
