@@ -66,7 +66,9 @@ def test_a_load_is_said_to_be_wrong_by_the_estimate_that_is_above_its_limit():
         carries=lambda link: None, last_dt=1e-3, plan=SimpleNamespace(name="", scheme="serial")
     )
     text = _text(coupling, "link", ("body", "load.force"), estimate)
-    assert "by about 60 % or more" in text and text.endswith("Set window to 2e-05 s or less.")
+    assert "by about 60 % of its change or more" in text and text.endswith(
+        "Set window to 2e-05 s or less."
+    )
 
 
 def test_estimates_come_back_from_a_snapshot():

@@ -103,17 +103,17 @@ def test_a_state_that_allows_no_step_is_refused():
     for stable in (0.0, -1.0, math.nan):
         with pytest.raises(StepError, match="the stable step must be positive"):
             windows.next(stable)
-    with pytest.raises(StepError, match=r"a window must be at least 2.22e-16 s"):
+    with pytest.raises(StepError, match=r"the stable step must be at least 2.22e-16 s"):
         windows.next(1e-17)
 
 
 @pytest.mark.parametrize(
     ("stable", "equal", "length", "why"),
     [
-        ([1e-3, 2e-4], [], 1e-3, "the largest step"),
-        ([1e-3, 1e-6], [], 64e-6, "64 of the smallest"),
-        ([math.inf, 1e-3], [], 1e-3, "the largest step"),  # a path that allows any step
-        ([1e-3, 2e-4], [1e-3, 2e-4], 2e-4, "what must step equally"),
+        ([1e-3, 2e-4], [], 1e-3, "the largest stable step"),
+        ([1e-3, 1e-6], [], 64e-6, "64 times the smallest"),
+        ([math.inf, 1e-3], [], 1e-3, "the largest stable step"),  # a path that allows any step
+        ([1e-3, 2e-4], [1e-3, 2e-4], 2e-4, "that must step equally"),
         ([math.inf], [], math.inf, "a 100th of the run"),
     ],
 )

@@ -223,7 +223,7 @@ def test_a_replay_of_a_run_that_does_not_fit_is_told_as_the_scene_is_checked(cap
     )
     assert "(of 0.001 s). Set scene.window to that of the recorded run" in message
     message = refusal(capsys, "check", *replay, "--set", "window=3e-3")
-    assert "the recording none at 0.0030303 s" in message
+    assert "the recording none at 0.00294118 s" in message
     assert run_scene(tmp_path, *replay[1:], "--set", "end=0.05", "--out", "two") == 0
     assert run_scene(tmp_path, *replay[1:], "--set", "window=2e-3", "--out", "three") == 0
 
