@@ -69,6 +69,13 @@ DEEPEST = 32  # tables and lists within each other
 SHOWN = 200  # characters of a value in a sentence
 MOST_NEAR = 200  # names among which the nearest is looked for, and that are listed
 MOST_SAID = 20  # mistakes of one table
+MISSING = ("missing", "missing_argument")  # pydantic's names of mistakes
+# What to write where a text stands in the place of a number, by pydantic's rule.
+NUMBERS = {
+    "should be a valid number": "it without quotes, or, if its key has a unit, with a decimal "
+    'point and a unit, as in "2.5 mm"',
+    "should be a valid integer": "it without quotes",
+}
 
 
 @dataclass_transform(kw_only_default=True, frozen_default=True)
@@ -188,7 +195,7 @@ def _by_place(mistakes: Iterable[Any], table: Any) -> list[dict[str, Any]]:
     """One mistake for each place; where a value may be of several kinds, their rules joined."""
     joined: dict[tuple[Any, ...], dict[str, Any]] = {}
     for mistake in mistakes:
-        place = _without_kinds(mistake["loc"], table)
+        place = _without_kinds(mistake["loc"], table, mistake["type"] in MISSING)
         around = joined.get(place[:-1])
         if around and around["input"] == mistake["input"]:  # the same value, as another kind
             place = place[:-1]
@@ -201,7 +208,7 @@ def _by_place(mistakes: Iterable[Any], table: Any) -> list[dict[str, Any]]:
     return [mistake for place, mistake in joined.items() if place not in outer]
 
 
-def _without_kinds(place: tuple[Any, ...], table: Any) -> tuple[Any, ...]:
+def _without_kinds(place: tuple[Any, ...], table: Any, is_missing: bool) -> tuple[Any, ...]:
     """Place of a mistake without the names of kinds that a value may be of."""
     names, value = [], table
     for number, part in enumerate(place):
@@ -210,7 +217,7 @@ def _without_kinds(place: tuple[Any, ...], table: Any) -> tuple[Any, ...]:
         is_item = isinstance(value, list) and isinstance(part, int) and part < len(value)
         if is_key or is_item:
             value = value[part]
-        elif TAG.fullmatch(str(part)) or not is_last:
+        elif TAG.fullmatch(str(part)) or not (is_last and is_missing):
             continue
         names.append(part)
     return tuple(names)
@@ -223,11 +230,10 @@ def _drop_renamed(params: type, mistakes: list[dict[str, Any]]) -> list[dict[str
         for mistake in mistakes
         if (new := _renamed(params, [str(part) for part in mistake["loc"]]))
     }
-    missing = ("missing", "missing_argument")
     return [
         mistake
         for mistake in mistakes
-        if mistake["loc"] not in renamed or mistake["type"] not in missing
+        if mistake["loc"] not in renamed or mistake["type"] not in MISSING
     ]
 
 
@@ -251,12 +257,29 @@ def _sentence(params: type, where: str, mistake: Any, beside: Collection[str]) -
     if mistake["type"] in ("unexpected_keyword_argument", "extra_forbidden"):
         known = _names(_class_at(params, names[:-1]))
         return unknown(place, names[-1], {*known, *(beside if len(names) == 1 else ())})
-    if mistake["type"] in ("missing", "missing_argument"):
+    if mistake["type"] in MISSING:
         return f"{place} is needed. Add {names[-1]} to it."
     if mistake["type"] == "value_error":
-        return f"{where}: {mistake['ctx']['error']}"
+        return _placed(where, names, str(mistake["ctx"]["error"]))
     rule = mistake["msg"].removeprefix("Input ").rstrip(".")
-    return f"{place} {rule}; found {shown(mistake['input'])}. Correct it."
+    is_quoted = isinstance(mistake["input"], str) and rule in NUMBERS
+    cure = f"Write {NUMBERS[rule]}." if is_quoted else "Correct it."
+    return f"{place} {rule}; found {shown(mistake['input'])}. {cure}"
+
+
+def _placed(where: str, names: list[str], text: str) -> str:
+    """Sentence of a parameter class with the path of its table, which it may begin with a part of.
+
+    "damping must ..." of the table boundary.damping.0 of components.water becomes
+    "components.water.boundary.damping.0 must ...".
+    """
+    place = ".".join([where, *names])
+    keys = [name for name in names if not name.isdecimal()]
+    for first in range(len(keys)):
+        head = ".".join(keys[first:])
+        if text.startswith((f"{head} ", f"{head}.", f"{head}: ")):
+            return f"{place}{text.removeprefix(head)}"
+    return f"{place}: {text}"
 
 
 def unknown(place: str, name: str, known: Iterable[str]) -> str:

@@ -13,7 +13,7 @@ from typing import Any
 
 from quintet.interfaces.keys import Key, keys
 from quintet.interfaces.libraries import require
-from quintet.interfaces.params import shown
+from quintet.interfaces.params import LARGEST, shown
 
 Table = dict[str, Any]
 UnitOf = Callable[[Key, Mapping[str, Any]], str]  # of a key, in a table of its class
@@ -207,11 +207,16 @@ def number_in(text: str, unit: str, where: str) -> float:
     assert match is not None
     given_unit = _unit(match[2].strip())
     if given_unit is None:
-        near = _nearest(match[2].strip())
+        near = _nearest(match[2].strip(), target)
         hint = f"Did you mean {near}?" if near else f'Write it as in "{_example(unit)}".'
         raise ValueError(f"{where}: the unit of {shown(text)} is not known. {hint}")
     try:
         return float(_registry().Quantity(Fraction(match[1]), given_unit).to(target).magnitude)
+    except OverflowError as error:
+        raise ValueError(
+            f"{where} must be below {LARGEST:.0e} in size, in SI units; found {shown(text)}. "
+            "Correct it."
+        ) from error
     except (PintError, ArithmeticError) as error:
         rule = f"in {unit}, or in a unit of the same dimension" if unit != "1" else "a pure number"
         raise ValueError(
@@ -258,14 +263,15 @@ def _spelled(text: str) -> str:
     return POWER.sub(r"**\1", text)
 
 
-def _nearest(text: str) -> str:
-    """Return a known unit whose symbol is like the one in a text; "" if none is."""
+def _nearest(text: str, target: Any) -> str:
+    """Return a known unit that a text may mean, of the dimension of a target; "" if none does."""
     symbols = re.findall(r"[A-Za-zµμΩÅ°_]+", text)
     if len(symbols) != 1:
         return ""
     common = ("mm", "cm", "µm", "km", "ms", "µs", "kg", "kPa", "MPa", "GPa", "kN", "kJ", "kW")
     near = difflib.get_close_matches(symbols[0], [*common, *_names()], 1, 0.5)
-    return near[0] if near else ""
+    unit = _unit(near[0]) if near else None
+    return near[0] if unit is not None and unit.is_compatible_with(target) else ""
 
 
 def _names() -> Iterator[str]:

@@ -1,6 +1,6 @@
 from typing import ClassVar
 
-from quintet.interfaces.params import Count, NotNegative, Positive, parameters, read
+from quintet.interfaces.params import Count, NotNegative, Number, Positive, parameters, read
 
 
 @parameters
@@ -18,6 +18,25 @@ class Body:
 
 
 @parameters
+class Zone:
+    low: Number = 0.0
+    high: Number = 1.0
+
+    def __post_init__(self):
+        if self.low > self.high:
+            raise ValueError("zones must go upwards. Exchange the ends.")
+        if self.low < 0.0:
+            raise ValueError("zones.low must be positive. Raise it.")
+        if self.high > 9.0:
+            raise ValueError("it must be short. Lower high.")
+
+
+@parameters
+class Named:
+    zone: str | Zone = ""
+
+
+@parameters
 class Fluid:
     RENAMED: ClassVar = {
         "viscosity": "viscosity.artificial",  # now a table of that name
@@ -27,6 +46,7 @@ class Fluid:
     youngs_modulus: Positive
     viscosity: Viscosity = Viscosity()
     bodies: tuple[Body, ...] = ()
+    zones: tuple[Zone, ...] = ()
 
 
 def test_an_old_key_is_answered_with_the_new_one():
@@ -63,4 +83,31 @@ def test_new_keys_are_taken_and_their_mistakes_told_as_ever():
     assert wrong == [
         "water.youngs_modulus is needed. Add youngs_modulus to it.",
         "water.viscosity.artificial should be greater than or equal to 0; found -1.0. Correct it.",
+    ]
+
+
+def test_a_rule_of_a_table_in_a_list_names_the_table():
+    zones = [{}, {"low": 2.0}, {"low": -1.0}, {"high": 10.0}]
+    _, wrong = read(Fluid, {"youngs_modulus": 1.0, "zones": zones}, "components.water")
+    assert wrong == [
+        "components.water.zones.1 must go upwards. Exchange the ends.",
+        "components.water.zones.2.low must be positive. Raise it.",
+        "components.water.zones.3: it must be short. Lower high.",
+    ]
+
+
+def test_of_a_table_in_the_place_of_a_text_only_its_mistakes_are_named():
+    _, wrong = read(Named, {"zone": {"low": "x"}}, "scene")
+    assert [mistake.split(";")[0] for mistake in wrong] == [
+        "scene.zone.low should be a valid number"
+    ]
+    _, wrong = read(Named, {"zone": 5}, "scene")
+    assert len(wrong) == 1 and wrong[0].startswith("scene.zone should be a valid string or ")
+
+
+def test_a_quoted_number_with_a_decimal_comma_is_told_how_to_be_written():
+    _, wrong = read(Fluid, {"youngs_modulus": "3,5 MPa"}, "water")
+    assert wrong == [
+        "water.youngs_modulus should be a valid number; found '3,5 MPa'. Write it without quotes, "
+        'or, if its key has a unit, with a decimal point and a unit, as in "2.5 mm".'
     ]

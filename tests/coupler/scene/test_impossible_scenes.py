@@ -33,13 +33,13 @@ CASES = {
     ),
     "a list in the place of a port": (
         ["two_springs", "--set", 'links.0.pairs=[[[], "lower.load"]]'],
-        "links.0: pairs must be pairs of ports, the giver first, as in "
+        "links.0.pairs must be pairs of ports, the giver first, as in "
         """[["a.motion", "b.foot"]]; found [[[], 'lower.load']]. Name both of each.""",
     ),
-    "no pairs": (["two_springs", "--set", "links.0.pairs=[]"], "links.0: pairs must be pairs of"),
+    "no pairs": (["two_springs", "--set", "links.0.pairs=[]"], "links.0.pairs must be pairs of"),
     "lists in the place of components": (
         ["floating_cube", "--set", "links.0.between=[[], []]"],
-        "links.0: between must name two components; found [[], []]. Name both.",
+        "links.0.between must name two components; found [[], []]. Name both.",
     ),
     "a number for a link's name": (
         ["two_springs", "--set", "links.0.name=3"],
