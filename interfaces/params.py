@@ -261,7 +261,9 @@ def _sentence(params: type, where: str, mistake: Any, beside: Collection[str]) -
         return f"{place} is needed. Add {names[-1]} to it."
     if mistake["type"] == "value_error":
         return _placed(where, names, str(mistake["ctx"]["error"]))
-    rule = mistake["msg"].removeprefix("Input ").rstrip(".")
+    # "Input should be ...", or, of a length, "Tuple should have ... after validation, not 0".
+    text = mistake["msg"].partition(" after validation")[0].rstrip(".")
+    rule = text[text.find("should ") :] if "should " in text else text
     is_quoted = isinstance(mistake["input"], str) and rule in NUMBERS
     cure = f"Write {NUMBERS[rule]}." if is_quoted else "Correct it."
     return f"{place} {rule}; found {shown(mistake['input'])}. {cure}"

@@ -1,4 +1,6 @@
-from typing import ClassVar
+from typing import Annotated, ClassVar
+
+from pydantic import Field
 
 from quintet.interfaces.params import Count, NotNegative, Number, Positive, parameters, read
 
@@ -94,6 +96,16 @@ def test_a_rule_of_a_table_in_a_list_names_the_table():
         "components.water.zones.2.low must be positive. Raise it.",
         "components.water.zones.3: it must be short. Lower high.",
     ]
+
+
+@parameters
+class Filled:
+    bodies: Annotated[tuple[Body, ...], Field(min_length=1)]
+
+
+def test_an_empty_list_is_answered_in_plain_words():
+    _, wrong = read(Filled, {"bodies": []}, "pile")
+    assert wrong == ["pile.bodies should have at least 1 item; found []. Correct it."]
 
 
 def test_of_a_table_in_the_place_of_a_text_only_its_mistakes_are_named():
