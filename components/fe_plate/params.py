@@ -40,7 +40,12 @@ class Pressure:
 
     def __post_init__(self) -> None:
         if self.pulse and self.end is None:
-            raise ValueError("pressures: a pulse must have an end; found none. Say it.")
+            raise ValueError("pressures: a pulse must have an end; found none. Add end.")
+        if self.end is not None and not self.end > self.begin:
+            raise ValueError(
+                f"pressures.end must be after begin, {self.begin:g} s; found {self.end:g} s. "
+                "Correct one of them."
+            )
 
     def at(self, time: float) -> float:
         """Pressure [Pa] at a time [s]."""
@@ -70,7 +75,9 @@ class RigidWall:
 
     def __post_init__(self) -> None:
         if not any(self.normal):
-            raise ValueError("rigid wall: normal must have a length; found 0.")
+            raise ValueError(
+                "rigid_walls.normal must not be 0; found 0. Let it point to the structure."
+            )
 
 
 @parameters

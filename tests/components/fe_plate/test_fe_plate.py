@@ -321,3 +321,11 @@ def test_threads_change_no_bit(integration):
         ends.append(structure.save())
     for key, array in ends[0].items():
         np.testing.assert_array_equal(array, ends[1][key], err_msg=key)
+
+
+@pytest.mark.parametrize("pulse", [True, False])
+def test_a_pressure_that_ends_before_it_begins_is_refused(pulse):
+    table = {"lowest": (0.0,) * 3, "highest": (1.0,) * 3}
+    with pytest.raises(ValueError, match=r"pressures.end must be after begin, 0.2 s; found 0.1 s"):
+        Pressure(faces=Faces(**table), pressure=1.0, begin=0.2, end=0.1, pulse=pulse)
+    assert Pressure(faces=Faces(**table), pressure=1.0, begin=0.1, end=0.2, pulse=pulse).at(0.15)
