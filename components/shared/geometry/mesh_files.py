@@ -51,9 +51,9 @@ def surface(path: Path, scale: float) -> Solid:
         ) from error
     if not (mesh.is_watertight and mesh.is_winding_consistent):
         raise ValueError(
-            f"file {path.name} must be a closed surface whose triangles all look outwards; found "
-            f"{open_edges(mesh)} edges of {len(corners)} triangles without a partner. Close it, as "
-            "trimesh.repair can."
+            f"file {path.name} must be a closed surface, each edge of two triangles whose normals "
+            f"point to the same side; found {wrong_edges(mesh)} other edges on {len(corners)} "
+            "triangles. Repair it, as trimesh.repair can."
         )
     if mesh.volume < 0.0:
         mesh.invert()
@@ -79,8 +79,8 @@ def _require_simple(name: str, triangles: Array) -> None:
         raise ValueError(
             f"file {name} must enclose each part of its volume once; found {twice / enclosed:.1%} "
             f"of it in several shells that overlap, and {reverse / enclosed:.1%} in shells that "
-            "are inside out. Unite solids that overlap, let the triangles of solids look outwards, "
-            "and those of cavities into the cavity."
+            "are inside out. Unite solids that overlap; normals of a solid's triangles point out "
+            "of it, and those of a cavity's into the cavity."
         )
 
 
@@ -117,12 +117,12 @@ def _crossings(triangles: Array, place: Array) -> tuple[Array, Array]:
     return x, np.sign(whole[through])
 
 
-def open_edges(mesh: object) -> int:
-    """Count the edges that are not passed once in either direction."""
+def wrong_edges(mesh: object) -> int:
+    """Count the edges that two triangles do not pass once in either direction each."""
     edges = np.asarray(getattr(mesh, "edges", np.zeros((0, 2))), np.int64)
-    count = int(edges.max(initial=0)) + 1
-    forward, backward = edges[:, 0] * count + edges[:, 1], edges[:, 1] * count + edges[:, 0]
-    return int((~np.isin(forward, backward)).sum())
+    _, number = np.unique(np.sort(edges, axis=1), axis=0, return_inverse=True)
+    number, way = number.reshape(-1), np.sign(edges[:, 1] - edges[:, 0])
+    return int(((np.bincount(number) != 2) | (np.bincount(number, way) != 0.0)).sum())
 
 
 def voxels(path: Path, width: float) -> Solid:
@@ -155,6 +155,11 @@ def _voxel_array(path: Path) -> Array:
         raise ValueError(
             f"file {path.name} must have three axes of numbers, of which not all are zero; found "
             f"shape {getattr(array, 'shape', None)}. Write it by numpy.save."
+        )
+    if wrong := int((~np.isfinite(array)).sum()):
+        raise ValueError(
+            f"file {path.name} must have finite numbers, 0 outside of the solid; found {wrong} of "
+            f"{array.size} that are not. Write 0 in their place."
         )
     return np.asarray(array)
 

@@ -146,6 +146,13 @@ def test_an_agglomerate_is_sampled_as_the_shape_in_its_file(files):
     np.testing.assert_allclose(samples["motion.arm"].mean(axis=0), 0.0, atol=1e-3)
 
 
+def cube_at(place):
+    """A cube that shares an edge along z with the cube at 0."""
+    return trimesh.creation.box(
+        (EDGE,) * 3, trimesh.transformations.translation_matrix([place, place, 0.0])
+    )
+
+
 def test_what_is_wrong_with_a_file_is_told(files):
     cube = trimesh.creation.box((EDGE,) * 3)
     cube.update_faces(np.arange(12) != 5)
@@ -157,14 +164,20 @@ def test_what_is_wrong_with_a_file_is_told(files):
     (files / "text.npy").write_text("no array here")
     np.save(files / "flat.npy", np.ones((3, 3)))
     np.save(files / "none.npy", np.zeros((3, 3, 3)))
+    np.save(files / "nan.npy", np.pad(np.full((1, 1, 1), np.nan), 1, constant_values=1.0))
+    pair = trimesh.util.concatenate([cube_at(0.0), cube_at(EDGE)])
+    pair.merge_vertices()
+    pair.export(files / "pair.ply")
     wrong_bodies = {
-        "bodies: file none.stl must lie beside the scene; in its folder": body("none.stl"),
+        "bodies.0.file none.stl must lie beside the scene; in its folder": body("none.stl"),
         "must be a closed surface": body(files / "open.stl"),
-        "found 3 edges of 11 triangles without a partner": body(files / "open.stl"),
+        "found 3 other edges on 11 triangles": body(files / "open.stl"),
         "text.stl must be a surface of triangles (STL, OBJ, PLY)": body(files / "text.stl"),
         "text.npy must be one array": body(files / "text.npy"),
         "must have three axes of numbers": body(files / "flat.npy"),
         "of which not all are zero": body(files / "none.npy"),
+        "must have finite numbers, 0 outside of the solid; found 1 of 27": body(files / "nan.npy"),
+        "found 1 other edges on 24 triangles": body(files / "pair.ply"),
         "sphere_radius must be at most half the shape's shortest edge, 0.075 m": body(
             files / "ball.ply", radius=0.08
         ),
