@@ -27,6 +27,7 @@ def check_boxes(fluid: Fluid, spacing: float) -> None:
 
 def check_walls(boundary: Boundary, fluid: Fluid, spacing: float, dimensions: int) -> None:
     """Fluid is inside the walls, and moving faces move in their own planes."""
+    _check_wall_velocity(boundary, dimensions)
     if boundary.tank is None:
         return
     _check_corners("boundary.walls", boundary.tank, spacing)
@@ -42,7 +43,6 @@ def check_walls(boundary: Boundary, fluid: Fluid, spacing: float, dimensions: in
                     f"{high[axis]} m; found {bottom[axis]} to {top[axis]} m. Move the box, or add "
                     "the face to boundary.open_faces."
                 )
-    _check_wall_velocity(boundary, dimensions)
 
 
 def check_lost_limit(lost_limit: float | None, boundary: Boundary) -> None:
@@ -55,13 +55,20 @@ def check_lost_limit(lost_limit: float | None, boundary: Boundary) -> None:
 
 
 def _check_wall_velocity(boundary: Boundary, dimensions: int) -> None:
-    closed = boundary.closed_faces(dimensions)
+    closed = boundary.closed_faces(dimensions) if boundary.tank is not None else ()
     for face, velocity in boundary.wall_velocity.items():
-        if face not in closed or velocity["xyz".index(face[0])] != 0.0:
+        if face not in closed:
             raise ValueError(
-                f"boundary.wall_velocity.{face} must lie in a face that the tank has, "
-                f"{', '.join(closed)}; found {velocity} m/s. Close the face, or leave its "
-                f"{face[0]} 0."
+                f"boundary.wall_velocity.{face} must be of a closed face of the tank, "
+                f"{', '.join(closed) or 'but the tank has none'}; found {face}. Name a closed "
+                f"face, or close this one: with boundary.walls, and without {face} in open_faces, "
+                "symmetry and periodic."
+            )
+        if velocity["xyz".index(face[0])] != 0.0:
+            raise ValueError(
+                f"boundary.wall_velocity.{face} must lie in the plane of the face; found "
+                f"{velocity} m/s. Set its {face[0]} component to 0, or move the face with "
+                "boundary.pistons."
             )
 
 
@@ -159,8 +166,8 @@ def check_method(boundary: Boundary, dimensions: int) -> None:
         )
     if films and boundary.symmetry:
         raise ValueError(
-            "boundary.lubrication_films knows no planes of symmetry; found films and symmetry "
-            f"{boundary.symmetry}. Leave one out."
+            "boundary.lubrication_films is not available with boundary.symmetry; found both, with "
+            f"symmetry {boundary.symmetry}. Leave one out."
         )
     if films and dimensions == 2:
         raise ValueError(

@@ -118,7 +118,7 @@ def write(path: Path, text: str) -> Path:
 
 def test_a_table_is_linear_between_its_rows(tmp_path):
     rows = [f"{x},{z},{3 * x + z},{1000 + z}" for z in (0.2, 0.0) for x in (0.0, 0.2, 0.1)]
-    folder = write(tmp_path, "x, z, u, density\n" + "\n".join(rows) + "\n")
+    folder = write(tmp_path, "\ufeffx, z, u, density\n" + "\n".join(rows) + "\n")
     table = nested(ROOM | {"fluid": (CUBE,), "initial.table": "start.csv"})
     params, errors = read(SphFluidParams, table, "water", folder)
     assert not errors
@@ -138,6 +138,9 @@ def test_a_table_is_linear_between_its_rows(tmp_path):
         ("x,speed\n0,1\n", "must have columns of finite numbers"),
         ("x,u\n0,nan\n", "must have columns of finite numbers"),
         ("x,u\n0,much\n", "lines of numbers"),
+        ("x,u\n0,0,1\n", "separated by commas; found 3 cells in line 2, and 2 names"),
+        ("x,u\n0,0\n1\n", "found 1 cells in line 3, and 2 names"),
+        ("x,u\n", "found 1 lines"),
         ("", "lines of numbers"),
     ],
 )

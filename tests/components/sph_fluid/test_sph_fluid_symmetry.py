@@ -317,11 +317,11 @@ def test_only_a_scene_that_asks_imports_them() -> None:
         ({"gravity": (0.5, 0.0, -9.8)}, r"x- must have gravity in its plane; found \(0.5, 0.0"),
         (
             {"boundary.wall_velocity": {"x-": (0.0, 1.0, 0.0)}},
-            r"wall_velocity.x- must lie in a face that",
+            r"wall_velocity.x- must be of a closed face of the tank, ",
         ),
         (
             {"boundary.lubrication_films": True},
-            r"films knows no planes of symmetry; found films and symmetry \('x-',\)",
+            r"films is not available with boundary.symmetry; found both, with symmetry \('x-',\)",
         ),
         (
             {"boundary.symmetry": ("x-", "x+"), "fluid": (THIN,), "boundary.walls": THIN},
