@@ -45,8 +45,8 @@ class Line:
         rise = self.fairlead[2] - self.anchor[2]
         if self.weight > 0.0 and self.on_bed and rise < -BELOW * self.length:
             raise ValueError(
-                "line: its fairlead must not be below the bed, on which its anchor stands; found "
-                f"it {-rise:g} m below. Correct it, or set on_bed = false."
+                "lines.fairlead must not be below the bed, which is at the height of the anchor; "
+                f"found it {-rise:g} m below. Correct it, or set on_bed = false."
             )
 
 

@@ -155,7 +155,8 @@ class SphSolidParams:
         )
         _require(
             all(level.body < len(self.bodies) for level in self.levels),
-            f"levels: body must be below {len(self.bodies)}, their number.",
+            f"levels: body must be below {len(self.bodies)}, the number of bodies; found "
+            f"{', '.join(str(level.body) for level in self.levels)}. Correct it.",
         )
         self._check_symmetry()
         self._check_method()

@@ -111,9 +111,9 @@ def _in_classes(name: str) -> str:
 def _check_name(subject: str, name: str) -> None:
     if not NAME.fullmatch(name) or len(name) > LONGEST or keyword.iskeyword(name):
         raise SceneError(
-            f"new {subject}: a name must be lower-case letters, digits and _, beginning with a "
-            f"letter, at most {LONGEST} characters, and no word of Python; found {shown(name)}. "
-            "Choose another one."
+            f"new {subject}: a name must be words of lower-case letters and digits, joined by "
+            f"single _, beginning with a letter, at most {LONGEST} characters, and no keyword of "
+            f"Python; found {shown(name)}. Choose another one."
         )
     taken = set(
         library()

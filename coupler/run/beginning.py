@@ -68,7 +68,10 @@ class Start:
             with h5py.File(path, "r", locking=False) as file:
                 return read_value(file, name)
         except OSError as error:
-            raise SceneError(f"begin_from: {path} cannot be read ({error}).") from error
+            raise SceneError(
+                f"begin_from: the state {path} must be a file that can be read; found {error}. Run "
+                "that scene again, or name another run."
+            ) from error
 
 
 def _take_over(coupling: Coupling, state: State, stretch: float) -> None:

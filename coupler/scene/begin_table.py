@@ -121,6 +121,6 @@ def _components(
         if was != is_now:
             raise SceneError(
                 f"begin_from: components.{name} must be of kind {was}, as in the run in {place}; "
-                f"found {is_now}. Name it otherwise, or leave it out of begin_from.components."
+                f"found {is_now}. Rename it, or leave it out of begin_from.components."
             )
     return names

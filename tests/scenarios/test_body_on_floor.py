@@ -40,7 +40,7 @@ def test_without_films_it_is_told_what_is_missing(run_scene: Run) -> None:
     )
     (note,) = results["notes"]["water"]
     assert "body 0 touches a wall under water, and no film of water presses" in note
-    assert "boundary.method dbc knows none" in note
+    assert "films are not available with boundary.method dbc" in note
     quiet = run_scene(
         SCENE, "--preset", "box", *plain, "--set", "components.water.boundary.method=dbc",
         "--set", "components.water.boundary.lubrication_films=false",

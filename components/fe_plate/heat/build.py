@@ -45,7 +45,7 @@ def _holders(params: FeHeatParams, grid: Mesh) -> Whole:
         rows = _held_by(fixed, grid, f"fixed_temperatures.{number}")
         if not rows.any():
             raise SceneError(
-                f"fixed_temperatures.{number}: it must hold a node; it holds none. Correct the box."
+                f"fixed_temperatures.{number}: it must hold a node; it holds none. {fixed.cure}"
             )
         holder[rows] = number
     return holder
@@ -74,7 +74,7 @@ def _sources(params: FeHeatParams, grid: Mesh) -> Array:
         faces = faces_in(grid, [entry.faces], f"fluxes.{number}")
         if not len(faces):
             raise SceneError(
-                f"fluxes.{number}: its box must hold an outer face; none is. Correct the box."
+                f"fluxes.{number}: it must hold an outer face; it holds none. {entry.faces.cure}"
             )
         side = grid.side[faces]
         np.add.at(sources, side, entry.flux * face_shares(grid.node[side]))

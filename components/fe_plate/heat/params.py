@@ -84,9 +84,11 @@ class FixedTemperature(ByBoxOrSet):
         box = sum(corner is not None for corner in (self.lowest, self.highest))
         ways = (self.point is not None, box > 0, bool(self.node_set))
         if sum(ways) != 1 or box == 1:
+            names = ("point", "lowest", "highest", "node_set")
+            found = " and ".join(name for name in names if getattr(self, name))
             raise ValueError(
-                "fixed_temperatures: nodes are chosen by a point, by lowest and highest of a "
-                f"box, or by a node_set; found {sum(ways)} of these. Give one."
+                "fixed_temperatures: nodes must be chosen by point, by lowest and highest of a "
+                f"box, or by node_set; found {found or 'none of these'}. Give one of the three."
             )
 
 

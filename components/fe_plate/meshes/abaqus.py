@@ -26,7 +26,8 @@ def require_readable(path: Path) -> None:
             case "INCLUDE":
                 _refuse(path, "no *INCLUDE", "one", "Write all into one file.")
             case "INSTANCE" if data:
-                _refuse(path, "instances that are not moved", "one that is", "Export it in place.")
+                rule, cure = "instances without a translation or rotation", "Export them in place."
+                _refuse(path, rule, "one with it", cure)
             case "NSET" | "ELSET" as kind:
                 names[f"*{kind} {_name(options)}"] += 1
                 if kind == "NSET" and any(not _is_number(line) for line in data):

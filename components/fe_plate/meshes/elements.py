@@ -52,7 +52,7 @@ def require_sound(where: str, node: Array, corner: Whole) -> list[str]:
     if len(collapsed):
         raise SceneError(
             f"{where}: an element must have 8 different nodes; {len(collapsed)} of {len(corner)} "
-            f"are collapsed to wedges or the like, first element {collapsed[0]} at "
+            f"are collapsed to wedges or the like, first element {collapsed[0]} (from 0) at "
             f"{_middle(node, corner, collapsed[0])} m. Mesh it with 8-node solids alone."
         )
     least, scaled = least_jacobians(node, corner)
@@ -60,9 +60,10 @@ def require_sound(where: str, node: Array, corner: Whole) -> list[str]:
     if len(bad):
         worst = bad[np.argmin(least[bad])]
         raise SceneError(
-            f"{where}: element {worst} at {_middle(node, corner, worst)} m must have a Jacobian "
-            f"above 0 at each corner; found {least[worst]:.3g} m3: it is inside out, and "
-            f"{len(bad)} of {len(corner)} elements are. Turn their corners, or mesh it again."
+            f"{where}: element {worst} (from 0) at {_middle(node, corner, worst)} m must have a "
+            f"Jacobian above 0 at each corner; found {least[worst]:.3g} m3: it is inside out, and "
+            f"{len(bad)} of {len(corner)} elements are. Reverse the order of their corners, or "
+            "mesh it again."
         )
     poor = np.flatnonzero(scaled < POOR)
     if not len(poor):
@@ -70,7 +71,7 @@ def require_sound(where: str, node: Array, corner: Whole) -> list[str]:
     worst = poor[np.argmin(scaled[poor])]
     return [
         f"{where}: {len(poor)} of {len(corner)} elements are badly shaped (scaled Jacobian below "
-        f"{POOR:g}), the worst with {scaled[worst]:.2g}, element {worst} at "
+        f"{POOR:g}), the worst with {scaled[worst]:.2g}, element {worst} (from 0) at "
         f"{_middle(node, corner, worst)} m: strains in them are inaccurate."
     ]
 

@@ -134,8 +134,8 @@ def _all_parts(name: str, source: Source) -> Source:
     if source.foreign:
         raise SceneError(
             f"file {name} must have no other elements than solids, for they would be left out; "
-            f"found {_listed(Counter(source.foreign))}. Remove them, or choose parts of solids by "
-            "parts."
+            f"found keywords: {_listed(Counter(source.foreign))}. Remove them, or name the parts "
+            "that are solids in the key parts."
         )
     for block in source.cells:
         if block.type == HEXAHEDRON:
@@ -161,8 +161,8 @@ def _kind(name: str, source: Source) -> str:
     if others := solids - Counter({kind: solids[kind]}):
         raise SceneError(
             f"file {name} must have no other solids than {kind}, for they would be holes; found "
-            f"{_listed(others)} beside {solids[kind]} {kind}. Mesh it with one kind alone, or "
-            "choose parts of one kind by parts."
+            f"{_listed(others)} beside {solids[kind]} {kind}. Mesh it with one kind alone, or name "
+            "parts of one kind in the key parts."
         )
     return kind
 
@@ -186,8 +186,8 @@ def _left_out(name: str, source: Source, used: Whole) -> list[str]:
     if not +marks:
         return []
     return [
-        f"mesh {name}: {_listed(+marks)} lie on faces of its solids: they name nodes in sets, and "
-        "are no elements."
+        f"mesh {name}: {_listed(+marks)} lie on faces of its solids. They name nodes in sets, and "
+        "are not used as elements."
     ]
 
 

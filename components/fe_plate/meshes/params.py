@@ -82,29 +82,38 @@ class MeshedPart(BoxKeys, CylinderKeys, MeshKeys):
     def __post_init__(self) -> None:
         shape = self.geometry
         if (self.elements is None) != isinstance(shape, Mesh):
+            if self.elements is None:
+                raise ValueError(
+                    f"parts: a {self.shape} needs elements, three numbers of elements; found none. "
+                    "Add elements, as in [4, 4, 2]."
+                )
             raise ValueError(
-                f"part: a {self.shape} has {'no' if self.elements else 'its number of'} elements; "
-                f"found {self.elements or 'none'}. Correct them."
+                "parts: elements is for a box or a cylinder, and a mesh has those of its file; "
+                f"found {list(self.elements)}. Leave it out."
             )
         if self.cutout is not None and not isinstance(shape, Box):
-            raise ValueError(f"part: cutout is of a box; found a {self.shape}. Leave it out.")
+            raise ValueError(
+                f"parts: cutout is for a box alone; found a {self.shape}. Leave it out."
+            )
         if self.tetrahedra and not isinstance(shape, Box):
             raise ValueError(
-                f"part: tetrahedra = true is of a box; found a {self.shape}. Leave it out, and "
+                f"parts: tetrahedra = true is for a box; found a {self.shape}. Leave it out, and "
                 "mesh other shapes with tetrahedra in a file."
             )
         if self.parts and not isinstance(shape, Mesh):
             raise ValueError(
-                f"part: parts are of a mesh from a file; found {list(self.parts)} of a "
-                f"{self.shape}. Leave them out."
+                f"parts: parts is for a mesh from a file; found {list(self.parts)} with a "
+                f"{self.shape}. Leave it out."
             )
         if isinstance(shape, Box) and self.count == 0:
-            raise ValueError("part: cutout must leave an element; it leaves none. Make it smaller.")
+            raise ValueError(
+                "parts: cutout must leave an element; it leaves none. Make it smaller."
+            )
 
     @property
     def geometry(self) -> Shape:
         """The shape that the keys describe."""
-        return shape_of(self, "part")
+        return shape_of(self, "parts")
 
     @property
     def has_tetrahedra(self) -> bool:
@@ -188,8 +197,8 @@ def _size(name: str, node: NDArray[np.float64], elements: int, scale: float) -> 
     text = f"mesh {name}: {elements} elements, {len(node)} nodes, {x:.4g} x {y:.4g} x {z:.4g} m."
     if not SMALL < extent.max() < LARGE:
         text += (
-            f" Is that meant? One unit of length in the file is taken for {scale:g} m; of a mesh "
-            "in millimetres scale is 0.001."
+            f" Is that meant? One unit of length in the file is taken for {scale:g} m; for a file "
+            "in millimetres set scale = 0.001."
         )
     return text
 
@@ -249,10 +258,10 @@ class Part(MeshedPart):
     def require_planar(self, where: str) -> None:
         """Refuse a part that is no slab of one element, 1 m deep along y."""
         if self.shape != "box":
-            kind = "cylinder" if self.shape == "cylinder" else "mesh of 8-node solids"
+            kind = "cylinder" if self.shape == "cylinder" else "mesh from a file"
             raise ValueError(
                 f"{where}: in two dimensions it must be a box, 1 m deep along y in one element; "
-                f"found a {kind}, which has three. Make it a box, or set dimensions = 3."
+                f"found a {kind}. Make it a box, or set dimensions = 3."
             )
         (_, low, _), (_, high, _) = self.geometry.bounds
         deep, along = high - low, self.counts[1]

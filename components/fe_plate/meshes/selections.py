@@ -50,5 +50,7 @@ class Elements(ByBoxOrSet):
 
     def __post_init__(self) -> None:
         if self.node_set and self.element_set:
-            raise ValueError("elements: a node_set or an element_set, not both; found both.")
+            raise ValueError(
+                "a selection must have a node_set or an element_set; found both. Remove one."
+            )
         self.require_one(self.node_set or self.element_set)

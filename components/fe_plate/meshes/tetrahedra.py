@@ -136,7 +136,7 @@ def require_sound(where: str, node: Array, corner: Whole) -> list[str]:
     if len(collapsed):
         raise SceneError(
             f"{where}: a tetrahedron must have 10 different nodes; {len(collapsed)} of "
-            f"{len(corner)} have not, first element {collapsed[0]} at "
+            f"{len(corner)} have not, first element {collapsed[0]} (from 0) at "
             f"{_middle(node, corner, collapsed[0])} m. Mesh it again."
         )
     x = node[corner]
@@ -150,7 +150,7 @@ def require_sound(where: str, node: Array, corner: Whole) -> list[str]:
         element, edge = np.unravel_index(np.argmax(np.where(far, share, 0.0)), far.shape)
         raise SceneError(
             f"{where}: each midside node must lie within a quarter of an edge of the middle of its "
-            f"own edge; found node {4 + edge} of element {element} at "
+            f"own edge; found node {4 + edge} of element {element} (from 0) at "
             f"{_middle(node, corner, int(element))} m {share[element, edge]:.2g} of the edge away, "
             f"the farthest, and such nodes in {int(far.any(axis=1).sum())} of {len(corner)} "
             "elements: they are out of order, or faces are too curved. Number each element's last "
@@ -166,8 +166,8 @@ def require_sound(where: str, node: Array, corner: Whole) -> list[str]:
     return [
         f"{where}: {len(poor)} of {len(corner)} elements are badly shaped (three times the radius "
         f"of the sphere within, over that around, below {POOR:g}), the worst with "
-        f"{ratio[worst]:.2g}, element {worst} at {_middle(node, corner, worst)} m: strains in them "
-        "are inaccurate, and they make the step small."
+        f"{ratio[worst]:.2g}, element {worst} (from 0) at {_middle(node, corner, worst)} m: "
+        "strains in them are inaccurate, and they make the step small."
     ]
 
 
@@ -176,9 +176,9 @@ def _require_positive(where: str, node: Array, corner: Whole, least: Array, at: 
     if len(bad):
         worst = bad[np.argmin(least[bad])]
         raise SceneError(
-            f"{where}: element {worst} at {_middle(node, corner, worst)} m must have a Jacobian "
-            f"above 0 {at}; found {least[worst]:.3g} m3: it is inside out, and {len(bad)} of "
-            f"{len(corner)} elements are. Turn their corners, or mesh it again."
+            f"{where}: element {worst} (from 0) at {_middle(node, corner, worst)} m must have a "
+            f"Jacobian above 0 {at}; found {least[worst]:.3g} m3: it is inside out, and {len(bad)} "
+            f"of {len(corner)} elements are. Reverse the order of their corners, or mesh it again."
         )
 
 

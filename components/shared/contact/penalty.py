@@ -257,7 +257,8 @@ class PenaltyContact:
             )
         if self.numbers.opened:
             texts["erosion"] = (
-                "faces that erosion opens are not touched; faces eroded where particles are near, "
-                "which may pass there. End the run before, or give the mesh no failure."
+                "faces that erosion opens are not touched, so particles may pass there; found "
+                "faces eroded near particles. End the run earlier, or give the mesh a material "
+                "without failure."
             )
         return texts

@@ -111,7 +111,9 @@ def require_simple(where: str, corners: Sequence[tuple[float, float]]) -> None:
     along = np.roll(start, -1, axis=0) - start
     count = len(start)
     if not (np.linalg.norm(along, axis=1) > 0.0).all():
-        raise ValueError(f"{where}: corners must differ from the next. Remove one of two.")
+        raise ValueError(
+            f"{where}: each corner must differ from the next; found two that are equal. Remove one."
+        )
     first, second = np.triu_indices(count, 2)
     keep = ~((first == 0) & (second == count - 1))  # neighbours
     first, second = first[keep], second[keep]

@@ -47,13 +47,18 @@ class ByBoxOrSet:
         """What to do about a selection that holds nothing."""
         return f"Correct the set {self.node_set}." if self.node_set else "Correct the box."
 
+    def _named(self) -> str:
+        """Keys that are given, other than names of its own of a derived class."""
+        names = ("lowest", "highest", "node_set", "element_set")
+        return " and ".join(name for name in names if getattr(self, name, None))
+
     def require_one(self, name: str) -> None:
         """Refuse a selection that is not either by the box or by the name of a set."""
         corners = sum(corner is not None for corner in (self.lowest, self.highest))
         if corners != (0 if name else 2):
             raise ValueError(
-                "what is selected is either in a box, with lowest and highest, or in a set; found "
-                f"{corners} corners and {'a' if name else 'no'} set. Give one."
+                "a selection must have either lowest and highest, the corners of a box, or the "
+                f"name of a set; found {self._named() or 'neither'}. Give the one or the other."
             )
 
 

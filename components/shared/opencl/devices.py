@@ -17,7 +17,7 @@ from quintet.interfaces.errors import SceneError
 from quintet.interfaces.libraries import is_installed, require
 
 NO_DEVICE = (
-    "no OpenCL device was found. Install the driver of yours (its file .icd belongs into "
+    "no OpenCL device was found. Install the driver of your device (its .icd file belongs into "
     "/etc/OpenCL/vendors), or PoCL, which computes on the processor: pip install 'quintet[opencl]'."
 )
 NAME = re.compile(r"opencl(?::(\d{1,4}))?")

@@ -42,7 +42,7 @@ class SelectiveFilms:
     def join(self, state: State, static: Fields) -> None:
         """Find whether samples that links bring can have films."""
         if np.any(static.get("surface.contact", 0.0)):
-            self.lacking = "a link chooses the contact potential, which knows none"
+            self.lacking = "a link chooses the contact potential, for which films are not available"
 
     def load(self, state: State) -> None:
         """Have films if a state that was loaded has them."""
@@ -81,10 +81,10 @@ class SelectiveFilms:
             for row in np.flatnonzero(near_walls(boxes, self.params, reach) & is_wet)[:1]:
                 self.notes.append(
                     f"body {number[row]:g} touches a wall under water, and no film of water "
-                    f"presses between them, since {self.lacking}: it weighs on the wall what the "
-                    "water above it weighs too much. Set boundary.method to mdbc in three "
-                    "dimensions without planes of symmetry, or lubrication_films to false if this "
-                    "is meant."
+                    f"presses between them, since {self.lacking}: its load on the wall is too "
+                    "large by the weight of the water above it. Set boundary.method to mdbc in "
+                    "three dimensions without planes of symmetry, or, to leave it so, "
+                    "boundary.lubrication_films to false."
                 )
 
     def advance(self, state: State, lists: Lists, dt: float) -> None:

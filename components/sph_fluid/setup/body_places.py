@@ -17,10 +17,10 @@ from quintet.interfaces.errors import SceneError
 TOUCH = 0.55  # spacings by which a body may overlap; samples are spread evenly, not to the spacing
 MOST_TOLD = 5  # bodies
 OUTSIDE_WATER = (
-    "must begin outside the water",
-    "Move it, make the water of boxes around it, or set remove_inside_bodies.",
+    "the water",
+    "Move it, build the water from boxes around it, or set remove_inside_bodies = true.",
 )
-OUTSIDE_OBSTACLES = "must begin outside the obstacles", "Move one of them."
+OUTSIDE_OBSTACLES = "the obstacles", "Move one of them."
 
 
 class Room(NamedTuple):
@@ -54,8 +54,9 @@ def refuse_misplaced(body: Array, position: Array, slack: float, room: Room) -> 
             for k in _deepest(body, depth, slack):
                 texts_by_body.setdefault(
                     body[k],
-                    f"{texts[0]}; its sample at {_place(position[k])} is {depth[k]:.3g} m inside "
-                    f"box {number} of it, {_extent(low, high, room.axes)}. {texts[1]}",
+                    f"must begin outside {texts[0]}; its sample at {_place(position[k])} is "
+                    f"{depth[k]:.3g} m inside box {number} of {texts[0]}, "
+                    f"{_extent(low, high, room.axes)}. {texts[1]}",
                 )
     if room.tank is not None:
         _find_outside(texts_by_body, body, position, slack, room.tank, room)

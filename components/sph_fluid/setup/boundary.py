@@ -143,13 +143,13 @@ class Boundary:
     def why_no_films(self, dimensions: int) -> str:
         """Why there can be no films in narrow gaps; "" if there can."""
         if self.pistons:
-            return "films know no pistons"
+            return "films are not available with boundary.pistons"
         if self.method != "mdbc":
-            return f"boundary.method {self.method} knows none"
+            return f"films are not available with boundary.method {self.method}"
         if dimensions == 2:
-            return "in two dimensions water cannot flow in from the side"
+            return "films are not available in two dimensions"
         if self.symmetry:
-            return "films know no planes of symmetry"
+            return "films are not available with boundary.symmetry"
         if self.periodic:
-            return "films know no tanks that repeat"
+            return "films are not available with boundary.periodic"
         return ""

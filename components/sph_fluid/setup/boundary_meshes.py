@@ -54,7 +54,8 @@ class BoundaryMesh(MeshKeys):
         length = sum(x * x for x in self.orientation) ** 0.5
         if abs(length - 1.0) > UNIT:
             raise ValueError(
-                f"boundary.meshes: orientation must be of length 1; found {length:g}. Divide it."
+                f"boundary.meshes.orientation must be of length 1; found {length:g}. Divide it by "
+                "its length."
             )
 
     @property

@@ -146,10 +146,15 @@ def check_flow(
             )
         used_faces.add(face)
         low, high = tank[0][2], tank[1][2]
-        if passage.level is not None and (face[0] == "z" or not low < passage.level <= high):
+        if passage.level is not None and face[0] == "z":
             raise ValueError(
-                f"{name}: level must be a height in the tank, above {low:g} and up to {high:g} m, "
-                f"of an upright face; found {passage.level:g} m. Correct it, or remove it."
+                f"{name}: level is for a face across x or y; found it at a face across z. Remove "
+                "level."
+            )
+        if passage.level is not None and not low < passage.level <= high:
+            raise ValueError(
+                f"{name}: level must be a height in the tank, above {low:g} and up to {high:g} m; "
+                f"found {passage.level:g} m. Correct it, or remove it."
             )
     for entrance in inflow:
         entrance.check()

@@ -78,7 +78,7 @@ class InitialFields:
         for name, columns in (("velocity", "uvw"), ("density", ("density",))):
             if table is not None and table.has(*columns) and getattr(self, name) is not None:
                 raise ValueError(
-                    f"initial.{name} must be said once; found it and columns {', '.join(columns)} "
+                    f"initial.{name} must be given once; found it and columns {', '.join(columns)} "
                     "of the table. Remove one of them."
                 )
         if has_wave and self.velocity_at(corners) is not None:

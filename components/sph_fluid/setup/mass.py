@@ -59,10 +59,9 @@ def check_mass(fluid: Fluid, spacing: float, dimensions: int) -> None:
     """Refuse fluid of which a region would not hold what it should."""
     for region, excess in _excesses(fluid, spacing, dimensions, MOST):
         raise ValueError(
-            f"{region.name} must hold its mass of fluid within {100.0 * MOST:g} % of that of all; "
-            f"it would differ by {100.0 * excess / region.volume:+.2g} % of its own in "
-            f"{region.particles} particles. Choose a spacing of which its edges are multiples, or "
-            "a finer one."
+            f"{region.name} must hold its mass to within {100.0 * MOST:g} % of the mass of all "
+            f"fluid; its {region.particles} particles would hold {_much(excess / region.volume)} "
+            "mass. Choose a spacing of which its edges are multiples, or a finer one."
         )
 
 
@@ -83,15 +82,21 @@ def mass_notes(fluid: Fluid, spacing: float, dimensions: int) -> tuple[str, ...]
     """Say where particles do not hold what spacing³ would."""
     change = particle_volume(fluid, spacing, dimensions) / spacing**dimensions - 1.0
     uneven = tuple(
-        f"{region.name} holds {100.0 * excess / region.volume:+.2g} % of its mass more or less "
-        "than it should, and others the rest: their edges are cut differently"
+        f"{region.name} holds {_much(excess / region.volume)} mass, and other regions make up for "
+        "it: the spacing divides their edges differently"
         for region, excess in _excesses(fluid, spacing, dimensions, NOTED)
     )
     if abs(change) < TOLD:
         return uneven
     return (
-        f"edges of the fluid are no multiples of the spacing, {spacing:g} m: particles of density "
-        f"· spacing^{dimensions} would hold {-100.0 * change / (1.0 + change):+.2g} % of the mass "
-        f"asked for; so the mass of each is changed by {100.0 * change:+.2g} %",
+        f"the fluid's edges are not multiples of the spacing ({spacing:g} m), so particles of "
+        f"density · spacing^{dimensions} would hold {_much(-change / (1.0 + change))} mass; the "
+        f"mass of each was {'raised' if change > 0.0 else 'lowered'} by {100.0 * abs(change):.2g} "
+        "%",
         *uneven,
     )
+
+
+def _much(excess: float) -> str:
+    """Text of a share by which there is too much, or below 0 too little."""
+    return f"{100.0 * abs(excess):.2g} % too {'much' if excess > 0.0 else 'little'}"

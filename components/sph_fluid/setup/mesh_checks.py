@@ -86,7 +86,9 @@ def _check_options(boundary: Boundary, dimensions: int) -> None:
     elif boundary.symmetry:
         conflict = f"boundary.symmetry {list(boundary.symmetry)}. Leave one of the two out"
     elif boundary.lubrication_films is True:
-        raise ValueError("lubrication_films is not available with meshes. Remove one of them.")
+        raise ValueError(
+            "boundary.lubrication_films is not available with boundary.meshes. Remove one of them."
+        )
     if conflict:
         raise ValueError(
             "boundary.meshes are walls in three dimensions, without planes of symmetry or the "
@@ -111,12 +113,13 @@ def _check_fluid(name: str, region: str, mesh_surface: Surface, places: Array) -
     if len(rows):
         deepest = float(depth.max())
         point = np.array2string(places[np.argmax(depth)], precision=4)
-        place = f"{deepest:.3g} m behind" if deepest > 0.0 else f"{-deepest:.3g} m before"
+        place = f"{deepest:.3g} m behind" if deepest > 0.0 else f"{-deepest:.3g} m in front"
         place = "far behind" if deepest >= FAR else place
         raise ValueError(
             f"{name} must have all fluid {APART:g} spacings, {APART * mesh_surface.spacing:g} m, "
-            f"or more before it; found {len(rows)} of {len(places)} particles of {region} behind "
-            f"or nearer, one {place}, at {point} m. Cut the fluid, or choose the other fluid_side."
+            f"or more in front of it; found {len(rows)} of {len(places)} particles of {region} "
+            f"behind or nearer, one {place}, at {point} m. Cut the fluid, or choose the other "
+            "fluid_side."
         )
 
 

@@ -84,8 +84,8 @@ def _open_surface(file: str) -> tuple[Array, int]:
         )
     if not mesh.is_winding_consistent:
         raise ValueError(
-            f"file {name} must have triangles that all look to the same side; found neighbours "
-            "that do not. Turn them, as trimesh.repair.fix_normals can."
+            f"file {name} must have triangles whose normals all point to the same side; found "
+            "neighbours that do not. Turn them, as trimesh.repair.fix_normals can."
         )
     return corner, int((count == 1).sum())
 

@@ -62,7 +62,7 @@ def check_pistons(boundary: Boundary, dimensions: int, spacing: float) -> None:
         )
     if boundary.lubrication_films is True:
         raise ValueError(
-            "boundary.pistons and lubrication_films do not go together: films know no pistons. Set "
+            "boundary.lubrication_films is not available with boundary.pistons. Set "
             "lubrication_films to false, or remove the pistons."
         )
 
@@ -71,15 +71,16 @@ def _check_part(label: str, piston: Piston, boundary: Boundary, dimensions: int)
     closed = boundary.closed_faces(dimensions) if boundary.tank else ()
     if piston.face and piston.face not in closed:
         raise ValueError(
-            f"{label}.part must be a closed face of the tank, {', '.join(closed) or 'of none here'}"
-            f"; found {piston.part}. Close the face, or name another part."
+            f"{label}.part must be a closed face of the tank, "
+            f"{', '.join(closed) or 'but the tank has none'}; found {piston.part}. Close the face, "
+            "or name another part."
         )
     for kind, count in (("obstacles", len(boundary.solids)), ("meshes", len(boundary.meshes))):
         number = piston.number(kind)  # type: ignore[arg-type]
         if number >= count:
             raise ValueError(
-                f"{label}.part must be one of the {count} {kind}, numbered from 0 on; found "
-                f"{piston.part}. Correct its number."
+                f"{label}.part must be one of the {count} entries of boundary.{kind}, numbered "
+                f"from 0; found {piston.part}. Correct its number, or add the entry."
             )
 
 

@@ -164,8 +164,9 @@ def absorption_notes(boundary: Boundary) -> tuple[str, ...]:
         kh = wave_number(omega, waves.depth, waves.gravity) * waves.depth
         if kh > DEEP:
             notes.append(
-                f"boundary.pistons[{number}].waves.absorption is that of long waves; of waves with "
-                f"kh above {DEEP:g}, as here {kh:.3g}, the paddle sends back 17 % or more"
+                f"boundary.pistons[{number}].waves.absorption is made for long waves: with kh "
+                f"(wave number · depth) above {DEEP:g}, here {kh:.3g}, the paddle reflects 17 % or "
+                "more of the waves that reach it"
             )
     return tuple(notes)
 

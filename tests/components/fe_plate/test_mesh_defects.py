@@ -209,7 +209,10 @@ def test_files_without_cells_are_refused(tmp_path):
         ("*NSET, NSET=end\nleft, right\n", "sets of nodes by numbers"),
         ("*NSET, NSET=left\n1\n*NSET, NSET=left\n2\n", "found 2 of .NSET left"),
         ("*INCLUDE, INPUT=other.inp\n", "no .INCLUDE"),
-        ("*INSTANCE, NAME=a, PART=b\n0., 0., 1.\n", "instances that are not moved"),
+        (
+            "*INSTANCE, NAME=a, PART=b\n0., 0., 1.\n",
+            "instances without a translation or rotation; found one with it",
+        ),
     ],
 )
 def test_abaqus_files_that_the_reader_would_misread_are_refused(tmp_path, text, reason):

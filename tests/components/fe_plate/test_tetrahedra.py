@@ -258,7 +258,7 @@ def test_the_bricks_of_a_box_are_cut_into_six():
     assert plate.built.volume == pytest.approx(1e-6 / 6.0, rel=1e-12)
     assert len(plate.faces) == 4 * 2 * 32  # triangles: two faces with six nodes on each side
     assert part.expected_step == pytest.approx(plate.bound, rel=0.1)
-    with pytest.raises(ValueError, match="tetrahedra = true is of a box; found a cylinder"):
+    with pytest.raises(ValueError, match="tetrahedra = true is for a box; found a cylinder"):
         Part(
             shape="cylinder", base=(0.0,) * 3, top=(0.0, 0.0, 1.0), radius=1.0, elements=(2, 2, 2),
             tetrahedra=True, material=ELASTIC,

@@ -107,7 +107,10 @@ def test_a_link_of_motion_without_loads_is_refused():
 def test_a_fairlead_below_the_bed_is_refused_and_ends_a_run():
     sunken = {**CHAIN, "fairlead": [3.0, 0.0, -0.5]}
     _, (mistake,) = read(MooringLinesParams, {"lines": [sunken]}, "chains")
-    assert "must not be below the bed, on which its anchor stands; found it 0.5 m below" in mistake
+    assert (
+        "fairlead must not be below the bed, which is at the height of the anchor; found it 0.5"
+        in mistake
+    )
     component = lines_of(CHAIN, position=(3.0, 0.0, 2.0))
     with pytest.raises(StepError, match=r"line 0, at 0.001 s: its fairlead is 0.2 m below the bed"):
         load_of(component, position=(3.0, 0.0, -0.2))

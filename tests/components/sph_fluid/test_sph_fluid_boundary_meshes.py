@@ -233,9 +233,13 @@ def fan(folder):
 
 
 DEFECTS = {
-    "hole": (open_box, {}, "must be a closed surface .* edges of 10 triangles without a partner"),
+    "hole": (open_box, {}, "must be a closed surface, .* found 4 other edges on 10 triangles"),
     "overlap": (overlapping_boxes, {}, r"enclose each part of its volume once; found .*%"),
-    "two sides": (mixed_triangles, {"surface": "open"}, "triangles that all look to the same side"),
+    "two sides": (
+        mixed_triangles,
+        {"surface": "open"},
+        "triangles whose normals all point to the same side",
+    ),
     "three at an edge": (fan, {"surface": "open"}, "one or two triangles at each edge; found 1 "),
     "no fluid": (block, {"fluid_side": "back"}, r"all fluid 0.25 spac.* found 1280 of 1280 .*far"),
     "not a unit": (block, {"orientation": [1.0, 1.0, 0.0, 0.0]}, "of length 1; found 1.41421"),
@@ -263,7 +267,9 @@ def test_water_in_a_mesh_is_refused(tmp_path):
 
 def test_water_that_touches_a_mesh_is_refused(tmp_path):
     file = block(tmp_path, (0.38, 0.2, 0.1), (0.6, 0.6, 0.5))
-    with pytest.raises(ValueError, match=r"0.0125 m, or more before it; .*one 0.005 m before"):
+    with pytest.raises(
+        ValueError, match=r"0.0125 m, or more in front of it; .*one 0.005 m in front"
+    ):
         dam({"file": file})
 
 

@@ -47,7 +47,7 @@ def test_where_the_spacing_divides_all_edges_a_particle_has_its_cube():
 def test_a_mass_that_was_fitted_is_told_with_what_it_would_have_been():
     assert SphFluid(pool((0.1, 0.1, 0.1))).notes() == ()
     (note,) = SphFluid(pool((0.029, 0.029, 0.029))).notes()
-    assert "would hold -67 % of the mass" in note
+    assert "would hold 67 % too little mass; the mass of each was raised by 2e+02 %" in note
 
 
 def mistakes(*boxes):
@@ -59,7 +59,7 @@ def test_boxes_that_would_hold_too_much_or_too_little_are_refused():
     deep = [[0.0, 0.0, 0.0], [0.2, 0.2, 0.2]]
     assert mistakes(deep, [[0.2, 0.0, 0.0], [0.4, 0.2, 0.1]]) == []
     (sentence,) = mistakes(deep, [[0.2, 0.0, 0.0], [0.8, 0.2, 0.011]])
-    assert "fluid[0] must hold its mass of fluid within 2 % of that of all" in sentence
+    assert "fluid[0] must hold its mass to within 2 % of the mass of all fluid" in sentence
     assert "Choose a spacing" in sentence
     # A box is accepted if its error is small beside the mass of all fluid.
     assert mistakes(deep, [[0.2, 0.0, 0.0], [0.22, 0.02, 0.029]]) == []

@@ -195,7 +195,7 @@ def test_a_body_on_the_floor_beside_a_piston_has_no_film_and_a_note_says_why():
     fluid.step(2e-4)
     (note,) = [note for note in fluid.notes() if "touches a wall" in note]
     assert note.startswith("body 0 ")
-    assert "films know no pistons" in note
+    assert "films are not available with boundary.pistons" in note
 
 
 def test_a_state_of_a_piston_on_its_way_is_no_start():
@@ -264,7 +264,12 @@ DEEP = {"dimensions": 3}
         ("obstacles.00", PUSH, {}, "with a number N from 0 on; found obstacles.00"),
         ("obstacles.one", PUSH, {}, "with a number N from 0 on; found obstacles.one"),
         ("walls.z+", PUSH, {}, r"must be a closed face of the tank, x-, x\+, z-; found walls\.z"),
-        ("obstacles.3", PUSH, {}, "one of the 1 obstacles, numbered from 0 on; found obstacles.3"),
+        (
+            "obstacles.3",
+            PUSH,
+            {},
+            "one of the 1 entries of boundary.obstacles, numbered from 0; found",
+        ),
         ("meshes.0", PUSH, {}, "one of the 0 meshes"),
         ("walls.x-", OUT, {}, r"must move into the tank.*found displacements of -0.1 m along x"),
         ("obstacles.0", AHEAD, {}, r"must begin at no displacement.*found 0.08 m and 0 rad"),
@@ -281,7 +286,12 @@ DEEP = {"dimensions": 3}
         ("obstacles.0", TURN, {}, "in the plane of x and z in two dimensions"),
         ("obstacles.0", PUSH, {"boundary.symmetry": ["x+"]}, "plane of boundary.symmetry x"),
         ("obstacles.0", PUSH, {"boundary.method": "potential"}, "need boundary.method mdbc or dbc"),
-        ("obstacles.0", PUSH, DEEP | {"boundary.lubrication_films": True}, "films know no pistons"),
+        (
+            "obstacles.0",
+            PUSH,
+            DEEP | {"boundary.lubrication_films": True},
+            "films is not available",
+        ),
     ],
 )
 def test_a_piston_that_cannot_move_so_is_refused(part, motion, changes, match):

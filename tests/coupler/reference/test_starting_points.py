@@ -78,9 +78,10 @@ def test_the_name_of_the_example_is_gone(template):
         ("component", "echo", "a component that is installed"),
         ("component", "json", "a module of Python that is installed"),
         ("link", "direct", "a link that is installed"),
-        ("link", "class", "no word of Python"),
-        ("component", "../out", "must be lower-case letters"),
-        ("component", "My-Solver", "must be lower-case letters"),
+        ("link", "class", "no keyword of Python"),
+        ("component", "../out", "must be words of lower-case letters"),
+        ("component", "my__solver", "joined by single _"),
+        ("component", "My-Solver", "must be words of lower-case letters"),
     ],
 )
 def test_names_that_cannot_be_used_are_refused(tmp_path, template, name, message):

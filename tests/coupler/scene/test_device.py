@@ -99,7 +99,9 @@ def test_a_missing_library_says_how_to_install_it(monkeypatch, capsys):
 def test_a_machine_without_drivers_says_what_to_install(monkeypatch, capsys):
     monkeypatch.setattr(listing, "devices", lambda: [])
     assert listing.main() == 2
-    assert "No OpenCL device was found. Install the driver of yours" in capsys.readouterr().err
+    assert (
+        "No OpenCL device was found. Install the driver of your device" in capsys.readouterr().err
+    )
     monkeypatch.setattr("quintet.components.shared.opencl.devices.devices", lambda: [])
     with pytest.raises(SceneError) as error_info:
         device_of("opencl")

@@ -40,7 +40,7 @@ class Card(NamedTuple):
         else:
             if "\t" in self.text:
                 rule = "a line without commas has its fields in fixed columns"
-                self.refuse(rule, "a tabulator", "Write spaces, or commas.")
+                self.refuse(rule, "a tab character", "Write spaces, or commas.")
             fields, begin = [], 0
             for width in widths:
                 if self.form == LONG:

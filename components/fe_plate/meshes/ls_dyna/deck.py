@@ -141,7 +141,8 @@ class _Numbers:
                 card.refuse(rule, f"{number}, which is none", "Correct it, or add the part.")
             return _nodes_at(self.corner[self.part == number])
         if (kind, number) not in self.entries.sets:
-            rule = f"it must name a {kind} of the file"
+            what = "set of nodes" if kind == "set" else "set of parts"
+            rule = f"a velocity must be of a {what} of the file"
             card.refuse(rule, f"{number}, which is none", "Correct it, or add the set.")
         listed = self.entries.sets[kind, number]
         if kind == "set":
