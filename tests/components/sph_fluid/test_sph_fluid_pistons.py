@@ -270,7 +270,7 @@ DEEP = {"dimensions": 3}
             {},
             "one of the 1 entries of boundary.obstacles, numbered from 0; found",
         ),
-        ("meshes.0", PUSH, {}, "one of the 0 meshes"),
+        ("meshes.0", PUSH, {}, "one of the 0 entries of boundary.meshes"),
         ("walls.x-", OUT, {}, r"must move into the tank.*found displacements of -0.1 m along x"),
         ("obstacles.0", AHEAD, {}, r"must begin at no displacement.*found 0.08 m and 0 rad"),
         ("obstacles.0", LEANING, {}, r"must begin at no displacement.*found 0 m and 0.2 rad"),

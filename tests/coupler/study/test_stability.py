@@ -325,7 +325,7 @@ WRONG = {
     ),
     "energy": (
         STEP + RANGE + "energy = { factor = 0.5 }",
-        "0: energy.factor must be above 1; found 0.5. Raise it.",
+        "0.energy.factor must be above 1; found 0.5. Raise it.",
     ),
     "momentum": (
         STEP + RANGE + "momentum = 1e-9",
