@@ -85,10 +85,10 @@ class FixedTemperature(ByBoxOrSet):
         ways = (self.point is not None, box > 0, bool(self.node_set))
         if sum(ways) != 1 or box == 1:
             names = ("point", "lowest", "highest", "node_set")
-            found = " and ".join(name for name in names if getattr(self, name))
+            keys = " and ".join(name for name in names if getattr(self, name))
             raise ValueError(
                 "fixed_temperatures: nodes must be chosen by point, by lowest and highest of a "
-                f"box, or by node_set; found {found or 'none of these'}. Give one of the three."
+                f"box, or by node_set; found {keys or 'none of these'}. Give one of the three."
             )
 
 

@@ -306,7 +306,7 @@ def test_a_mesh_has_no_particles_in_a_closed_wall_of_the_tank(tmp_path, method):
 OPTIONS = {
     "potential": ({"boundary.method": "potential"}, "found boundary.method potential"),
     "symmetry": ({"boundary.symmetry": ["y-"]}, r"found boundary.symmetry \['y-'\]"),
-    "films": ({"boundary.lubrication_films": True}, "lubrication_films is not available with boundary.m"),
+    "films": ({"boundary.lubrication_films": True}, "films is not available with boundary.m"),
     "staggered": ({"staggered": True}, "staggered is not available with boundary.meshes"),
     "plane": ({"dimensions": 2}, "found dimensions 2"),
     "gauge": (

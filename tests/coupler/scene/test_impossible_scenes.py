@@ -257,7 +257,7 @@ def test_a_replay_without_a_run_is_of_the_latest_one(capsys, tmp_path):
 def test_water_that_leaves_room_for_bodies_may_hold_them(capsys):
     """A refusal names the key that helps: with this key the same scene is sound."""
     arguments = ["floating_cube", *CUBE_IN_WATER]
-    assert "or set remove_inside_bodies." in refusal(capsys, "run", *arguments)
+    assert "or set remove_inside_bodies = true." in refusal(capsys, "run", *arguments)
     with pytest.raises(SystemExit) as exit_info:
         main(["check", *arguments, "--set", "components.water.remove_inside_bodies=true"])
     assert exit_info.value.code == 0
