@@ -218,16 +218,18 @@ class FePlate(Component):
 
     def give(self, wanted: Keys) -> Fields:
         """Copy out the motion of the surface, its faces that have not eroded, and gauges."""
+        motion_of_nodes = {
+            POSITION: self.state.position,
+            VELOCITY: self.state.velocity,
+            TOUCHED_POSITION: self.state.position,
+            MEAN_VELOCITY: self.state.mean_velocity,
+            TOUCHED_VELOCITY: self.state.mean_velocity,
+        }
+        some = {key: array for key, array in motion_of_nodes.items() if key in wanted}
         values: dict[str, Array] = {}
-        for key, array in (
-            (POSITION, self.state.position),
-            (VELOCITY, self.state.velocity),
-            (TOUCHED_POSITION, self.state.position),
-            (MEAN_VELOCITY, self.state.mean_velocity),
-            (TOUCHED_VELOCITY, self.state.mean_velocity),
-        ):
-            if key in wanted:
-                values[key] = self.on_surface.collect(array)
+        if some:
+            arrays = self.on_surface.give(list(some.values()))
+            values = dict(zip(some, arrays, strict=True))
         if wanted & {ACTIVE, OPEN}:
             active = self.owners.gather(self.places_of_owners.active(self.state))
             values |= {key: active.copy() for key in (ACTIVE, OPEN) if key in wanted}

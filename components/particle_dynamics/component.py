@@ -131,8 +131,8 @@ class ParticleLattice(Component):
         names = {key.partition(".")[0] for key in wanted}
         if "points" in names:
             mean, relative = self.budget.hotness()
-            values["points.position"] = self.rows.all("position").copy()
-            values["points.velocity"] = self.rows.all("velocity").copy()
+            position, velocity = self.rows.give("position", "velocity")
+            values["points.position"], values["points.velocity"] = position, velocity
             values["points.hotness"], values["points.relative_hotness"] = mean, relative
             values["points.temperature"] = self.budget.temperature(mean)
         if "energies" in names:

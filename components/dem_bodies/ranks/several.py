@@ -6,12 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from quintet.components.dem_bodies.kernels import step as kernels
-from quintet.components.dem_bodies.kernels.motion_copies import (
-    PACKED,
-    copy_first_motion,
-    copy_packed_motion,
-    pack_motion,
-)
+from quintet.components.dem_bodies.kernels.motion_copies import write_motion
 from quintet.components.dem_bodies.kernels.reductions import number_pairs
 from quintet.components.dem_bodies.ranks.lists import SharedLists
 from quintet.components.dem_bodies.ranks.one import FEWEST, OneRank, room_for_motion
@@ -28,7 +23,7 @@ from quintet.components.dem_bodies.state import (
 )
 from quintet.components.shared.domain.exchange import share
 from quintet.components.shared.domain.extremes import greatest, least
-from quintet.components.shared.domain.waiting import wait_for_all
+from quintet.components.shared.domain.given_rows import GivenRows
 from quintet.components.shared.search.verlet_list import slack
 from quintet.components.shared.threads import Team
 from quintet.interfaces.component import Fields
@@ -61,6 +56,9 @@ class SeveralRanks(OneRank):
         several = threads > 1 and len(self.sums) >= 2 * FEWEST * self.shares.size
         self.team = Team(threads if several else 1, FEWEST, 1)
         self.mixed = rows.are_all
+        self.given_motion = GivenRows(
+            self.shares.communicator, self.shares.rows - 1, room_for_motion(0)
+        )
 
     def advance(self, state: State, dt: float, loaded: bool) -> bool:
         """Advance by dt [s]; return False where a position is not finite."""
@@ -155,15 +153,12 @@ class SeveralRanks(OneRank):
 
     def motion(self) -> Sequence[Numbers]:
         """Position, velocity, orientation and angular velocity of all bodies, on rank 0."""
-        state, owned, work = self.state, self.rows.owned, self.shares.work
+        state, first, work = self.state, self.rows.owned.start, self.shares.work
+        last = min(self.rows.owned.stop, self.shares.rows - 1)  # behind it is the ground
         work.begin()
-        packed = np.empty((0 if self.answers else owned.stop - owned.start, PACKED))
-        pack_motion(owned.start, state.motion, state.orientation, packed)
-        request, received = self.shares.gather_behind(packed)
-        parts = room_for_motion(self.shares.rows - 1 if self.answers else 0)
-        copy_first_motion(state.row, owned.stop, state.motion, state.orientation, *parts)
-        wait_for_all(request, received.nbytes if self.answers else 0)
-        copy_packed_motion(state.row, owned.stop, received, *parts)
+        places, parts = self.given_motion.begin(state.body[first:last])
+        write_motion(first, places, state.motion, state.orientation, *parts)
+        parts = self.given_motion.finish()
         work.end(steps=0)
         return parts if self.answers else ()
 

@@ -103,24 +103,6 @@ class Shares:
         wait_for_all(self.communicator.Igatherv(sent, target), 8 * (sum(counts) - count))
         return of_all
 
-    def gather_behind(self, rows: Numbers) -> tuple[Any, Numbers]:
-        """Begin to bring rows (k, width) of all ranks behind rank 0 to it, one after another.
-
-        Returns
-        -------
-        request
-            To wait for; until then no rank may change its rows.
-        rows : (m, width) float array
-            Those of all on rank 0, once they are there.
-        """
-        counts = rows.shape[1] * np.diff(self.ends())
-        counts[0] = 0
-        if self.rank:
-            return self.communicator.Igatherv(rows.reshape(-1), None), rows
-        received = np.empty((self.rows - int(self.ends()[1]), rows.shape[1]))
-        target = [received.reshape(-1), counts.tolist()]
-        return self.communicator.Igatherv(np.zeros(0), target), received
-
     def from_last(self, state: State) -> None:
         """Bring bodies that are no balls, which the last rank moves, up to date on every rank."""
         rows, spheres = slice(self.balls, self.rows), slice(self.balls, len(state.centre))

@@ -3,8 +3,6 @@
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple, Protocol
 
-import numpy as np
-
 from quintet.components.fe_plate.build import Structure
 from quintet.components.fe_plate.meshes.mesh import Mesh
 from quintet.components.fe_plate.state import Array, State, Whole
@@ -15,6 +13,9 @@ class Gathering(Protocol):
 
     def gather(self, rows: Any) -> Any:
         """All rows (k, ...) on rank 0, of each rank's own; on others something else."""
+
+    def give(self, rows: Sequence[Array]) -> Sequence[Array]:
+        """The same of several arrays, with memory that is kept for the next time."""
 
 
 class Rows(NamedTuple):
@@ -29,11 +30,12 @@ class Rows(NamedTuple):
         """All rows (k, ...), floats or ints, in the list's order on rank 0, of each rank's own."""
         return self.gathering.gather(rows)
 
-    def collect(self, array: Array) -> Array:
-        """All rows (k, ...) in the list's order on rank 0, of an array (n, ...) of this rank."""
+    def give(self, arrays: Sequence[Array]) -> Sequence[Array]:
+        """All rows (k, ...) in the list's order on rank 0, of arrays (n, ...) of this rank."""
         if isinstance(self.rows, slice):
-            return np.asarray(self.gather(array[self.rows]))
-        return np.asarray(self.gather(array.take(self.rows, axis=0)))  # faster than by brackets
+            return self.gathering.give([array[self.rows] for array in arrays])
+        # Faster than by brackets.
+        return self.gathering.give([array.take(self.rows, axis=0) for array in arrays])
 
 
 class Ranks(Protocol):

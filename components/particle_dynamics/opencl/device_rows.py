@@ -6,6 +6,7 @@ and speed are copied back.
 """
 
 import math
+from collections.abc import Sequence
 
 from quintet.components.particle_dynamics.build import Built
 from quintet.components.particle_dynamics.kernels.motion import EARLY
@@ -147,6 +148,10 @@ class DeviceRows:
     def all(self, name: str) -> Array:
         """Array of the state as it is now; not to be changed."""
         return self.points.get(name)
+
+    def give(self, *names: str) -> Sequence[Array]:
+        """Copies of some arrays of the state."""
+        return [self.all(name).copy() for name in names]
 
     def pair_energies(self) -> Array:
         """Potential energy (n,) J of the pairs that are listed for each point."""

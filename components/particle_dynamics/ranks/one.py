@@ -1,5 +1,7 @@
 """All points on one rank."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from quintet.components.particle_dynamics.build import Built
@@ -67,6 +69,10 @@ class OneRank:
         """Rows of all ranks of an array of the state; not to be changed."""
         array: Array = getattr(self.state, name)
         return array
+
+    def give(self, *names: str) -> Sequence[Array]:
+        """Copies of some arrays of the state."""
+        return [self.all(name).copy() for name in names]
 
     def pair_energies(self) -> Array:
         """Potential energy (n,) J of the pairs that are listed for each point."""

@@ -1,6 +1,7 @@
 """Points shared out among several ranks."""
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -161,6 +162,10 @@ class SeveralRanks:
     def all(self, name: str) -> Array:
         """Rows of all ranks of an array of the state, on rank 0; not to be changed."""
         return self._shares.gather(name, self._own(name))
+
+    def give(self, *names: str) -> Sequence[Array]:
+        """Copies of the rows of all points, on rank 0, of some arrays of the state."""
+        return self._shares.give([self._own(name) for name in names])
 
     def _refresh(self) -> None:
         """Bring copies to where their points are: those of a driven pair are set after forces."""

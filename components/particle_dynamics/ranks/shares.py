@@ -1,5 +1,6 @@
 """Which points are whose, from the start to the end of a run."""
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -64,6 +65,10 @@ class Shares:
             return whole
         count = self.count if name in POINTS else len(self._model.bathed.point)
         return np.broadcast_to(np.zeros((), rows.dtype), (count, *rows.shape[1:]))
+
+    def give(self, rows: Sequence[Array]) -> Sequence[Array]:
+        """Rows of all points on rank 0, of arrays (k, *shape) of the points of each rank."""
+        return self._points.give(rows)
 
     def saved(self, name: str, rows: Array) -> Array:
         """All rows of an array of the state on rank 0, those of this rank on others."""

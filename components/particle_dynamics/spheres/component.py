@@ -192,7 +192,7 @@ class ParticleSpheres(Component):
 
     def give(self, wanted: Keys) -> Fields:
         """Copy out motion, temperature and size."""
-        state, whole = self.state, self.rows.whole
+        state = self.state
         values: dict[str, Array] = {
             "position": state.position,
             "velocity": state.velocity,
@@ -204,12 +204,12 @@ class ParticleSpheres(Component):
         }
         if "spheres.acceleration" in wanted:
             values["acceleration"] = self._free_acceleration()
-        fields: dict[str, Array] = {}  # both ports have some fields; all ranks go in one order
-        for key in sorted(wanted):
-            name = key.partition(".")[2]
-            other = f"motion.{name}"
-            fields[key] = fields[other].copy() if other in fields else whole(values[name])
-        return fields
+        # Both ports have some fields; all ranks go in one order.
+        names = {key.partition(".")[2]: key for key in sorted(wanted)}
+        rows = self.rows.give([values[name] for name in names])
+        fields = dict(zip(names.values(), rows, strict=True))
+        doubled = wanted - fields.keys()
+        return fields | {key: fields[names[key.partition(".")[2]]].copy() for key in doubled}
 
     def save(self) -> Fields:
         """Copy out all state."""

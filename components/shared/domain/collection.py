@@ -1,10 +1,12 @@
 """Rows of all ranks on rank 0."""
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from quintet.components.shared.domain.given_rows import Giving
 from quintet.components.shared.domain.waiting import wait_for_all
 from quintet.interfaces.component import Array
 
@@ -22,8 +24,9 @@ class Collection:
     """
 
     def __init__(self, communicator: Any, ids: Whole) -> None:
-        self._communicator = communicator
+        self._communicator, self._ids = communicator, ids
         self._counts = _counts(communicator, ids)
+        self._giving = Giving(communicator, int(self._counts.sum()))
         of_all = _received(communicator, np.ascontiguousarray(ids, np.int64), self._counts)
         # Blocks of ids, one after another, arrive in order.
         rises = bool(np.all(of_all[1:] > of_all[:-1]))
@@ -38,6 +41,10 @@ class Collection:
         if self._communicator.rank:
             return rows
         return received if self._order is None else received.take(self._order, axis=0)
+
+    def give(self, rows: Sequence[Array]) -> Sequence[Array]:
+        """The same of several arrays, through memory that is kept for the next time."""
+        return self._giving.give(self._ids, rows)
 
 
 def collect(communicator: Any, rows: Array) -> Array:

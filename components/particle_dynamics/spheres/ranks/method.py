@@ -33,5 +33,8 @@ class Ranks(Protocol):
     def whole(self, rows: Array) -> Array:
         """Copy of the rows of all ranks on rank 0, in order; on others of their own."""
 
+    def give(self, rows: Sequence[Array]) -> Sequence[Array]:
+        """Copies of some arrays of the rows of all ranks, as `whole`, in memory that is kept."""
+
     def load(self, state: Fields) -> None:
         """Restore a state of all spheres."""

@@ -10,6 +10,7 @@ from quintet.components.particle_dynamics.spheres.state import Spheres, State
 from quintet.components.shared.domain.bisection import bisect
 from quintet.components.shared.domain.collection import Collection
 from quintet.components.shared.domain.extremes import added, greatest, least
+from quintet.components.shared.domain.given_rows import Giving
 from quintet.components.shared.domain.migration import migrate
 from quintet.components.shared.domain.replication import Replication
 from quintet.components.shared.exact_sums import bounds, sum_parts, total
@@ -40,6 +41,7 @@ class SeveralRanks:
         mine = np.flatnonzero(self._owners(state.position) == communicator.rank)
         self.spheres = Spheres(*(rows[mine] for rows in spheres))
         self.state = State._make([*(rows[mine] for rows in state[:-1]), state.sums])
+        self._giving = Giving(communicator, self.count)
         self._set_ids(mine)
 
     def _set_ids(self, ids: Whole) -> None:
@@ -93,6 +95,10 @@ class SeveralRanks:
     def whole(self, rows: Array) -> Array:
         """Copy of the rows of all ranks on rank 0, in order; on others their own."""
         return self._collection.gather(rows)
+
+    def give(self, rows: Sequence[Array]) -> Sequence[Array]:
+        """Copies of some arrays of the rows of all ranks on rank 0, in memory that is kept."""
+        return self._giving.give(self.ids, rows)
 
     def load(self, state: Fields) -> None:
         """Restore a state of all spheres, by as many ranks or others."""
