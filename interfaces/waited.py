@@ -14,7 +14,7 @@ class Traffic:
     messages = 0  # sent to single ranks
     message_bytes = 0  # in these
     collectives = 0  # operations of all ranks, whatever they carry
-    gathered_bytes = 0  # rows of other ranks that collectives brought here
+    gathered_bytes = 0  # rows of other ranks brought here, by collectives or in shared memory
 
 
 WAITED = Waited()

@@ -8,26 +8,14 @@ from quintet.components.shared.numba_options import EXACT
 
 
 @njit(**EXACT)
-def copy_motion(
-    row: Whole, motion: Numbers, orientations: Numbers, position: Numbers, velocity: Numbers,
-    orientation: Numbers, angular_velocities: Numbers,
-) -> None:  # fmt: skip
-    """Copy out the motion of all bodies, in the scene's order."""
-    for k in range(position.shape[0]):
-        i = row[k]
-        set_row_vector(position, k, 0, row_vector(motion, i))
-        set_row_vector(velocity, k, 0, row_vector(motion, i, VELOCITY))
-        set_row_vector(angular_velocities, k, 0, row_vector(motion, i, OMEGA))
-        for d in range(4):
-            orientation[k, d] = orientations[i, d]
-
-
-@njit(**EXACT)
 def write_motion(
     first: int, places: Whole, motion: Numbers, orientations: Numbers, position: Numbers,
     velocity: Numbers, orientation: Numbers, angular_velocities: Numbers,
 ) -> None:  # fmt: skip
-    """Write the motion of the rows from `first` on into their places (k,)."""
+    """Write the motion of the rows from `first` on into their places (k,).
+
+    Rows are read one after another: reading them in the order of their places takes longer.
+    """
     for n in range(places.shape[0]):
         i, k = first + n, places[n]
         set_row_vector(position, k, 0, row_vector(motion, i))

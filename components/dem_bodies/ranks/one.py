@@ -6,7 +6,7 @@ import numpy as np
 
 from quintet.components.dem_bodies.contact.lists import ContactLists
 from quintet.components.dem_bodies.kernels import step as kernels
-from quintet.components.dem_bodies.kernels.motion_copies import copy_motion
+from quintet.components.dem_bodies.kernels.motion_copies import write_motion
 from quintet.components.dem_bodies.state import (
     SUMS,
     TRAVEL,
@@ -73,9 +73,9 @@ class OneRank:
 
     def motion(self) -> Sequence[Numbers]:
         """Position, velocity, orientation and angular velocity of all bodies."""
-        state, count = self.state, len(self.state.row) - 1
+        state, count = self.state, len(self.state.body) - 1  # behind them is the ground
         parts = room_for_motion(count)
-        copy_motion(state.row, state.motion, state.orientation, *parts)
+        write_motion(0, state.body[:count], state.motion, state.orientation, *parts)
         return parts
 
     def whole(self, *names: str) -> tuple[Model, State]:

@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 from quintet.components.shared.domain.shared_memory import SharedMemory, share_memory
 from quintet.components.shared.domain.waiting import wait, wait_for_all
 from quintet.interfaces.component import Array
-from quintet.interfaces.waited import TRAFFIC
 
 Whole = NDArray[np.int64]
 Kinds = tuple[tuple[tuple[int, ...], np.dtype[Any]], ...]  # shapes and types of rows
@@ -78,7 +77,8 @@ class GivenRows:
         sent = len(self._ids) if has_sent else 0
         counts = None if rank else np.empty(self._communicator.size, np.int64)
         # From then on rank 0 knows that all others have written their rows.
-        wait_for_all(self._communicator.Igather(np.array([sent], np.int64), counts))
+        request = self._communicator.Igather(np.array([sent], np.int64), counts)
+        wait_for_all(request, 0 if rank else self._bytes_of_others())
         if counts is None:
             if sent:
                 self._send(arrays)
@@ -124,12 +124,14 @@ class GivenRows:
             for part, (shape, dtype) in zip(parts, self._rows, strict=True)
         ]
 
+    def _bytes_of_others(self) -> int:
+        """Bytes of other ranks' rows; also those that are not sent here are between hosts."""
+        return 8 * sum(self._widths) * (self._count - len(self._ids))
+
     def _send(self, arrays: Sequence[Array]) -> None:
         """Send own rows and their ids to rank 0, all as bits of floats."""
         flat = [np.asarray(self._ids, np.int64), *(array.reshape(-1) for array in arrays)]
         packed = np.concatenate([np.ascontiguousarray(part).view(np.float64) for part in flat])
-        TRAFFIC.messages += 1
-        TRAFFIC.message_bytes += packed.nbytes
         wait(self._communicator.Isend(packed, 0, TAG))
 
     def _receive(self, rank: int, count: int, arrays: Sequence[Array]) -> None:

@@ -11,7 +11,7 @@ import numpy as np
 from mpi4py import MPI
 
 from quintet.components.shared.domain import shared_memory
-from quintet.components.shared.domain.given_rows import Giving
+from quintet.components.shared.domain.given_rows import GivenRows, Giving
 from quintet.interfaces.waited import TRAFFIC
 
 WORLD = MPI.COMM_WORLD
@@ -35,23 +35,37 @@ def mapped():
     return Path("/proc/self/maps").read_text().count("memfd:quintet")
 
 
+def count_messages():
+    """Note the rows in each message of this rank."""
+    send, sent = GivenRows._send, []
+
+    def noted(given, arrays):
+        sent.append(len(arrays[0]))
+        send(given, arrays)
+
+    GivenRows._send = noted
+    return sent
+
+
 def main(far):
+    sent = count_messages()
     if far == "all" or (far == "rank 1" and WORLD.rank == 1):
         shared_memory._mapped = lambda *address: None
     giving, random = Giving(WORLD, COUNT), np.random.default_rng(3)
-    right, kept = [], []
+    right, kept, written = [], [], []
     for time in range(TIMES):
         ids = np.flatnonzero(random.integers(0, WORLD.size, COUNT) == WORLD.rank)
         arrays = giving.give(ids, rows_of(ids, time))
         right.append(is_right(arrays, slice(None), time) if WORLD.rank == 0 else True)
         if time in KEPT:
             kept.append(([array[3:7] for array in arrays], time))
+        written.append(len(ids))
         del arrays
     if WORLD.rank == 0:
         right += [is_right(arrays, slice(3, 7), time) for arrays, time in kept]
     used = mapped()
     del giving, kept
-    counts = [right, used, mapped(), TRAFFIC.messages, TRAFFIC.message_bytes]
+    counts = [right, used, mapped(), sent, written, TRAFFIC.gathered_bytes]
     counts_of_all = WORLD.gather(counts)
     if WORLD.rank == 0:
         print(json.dumps(counts_of_all))
