@@ -41,7 +41,7 @@ class GivenRows:
         self._memories: list[SharedMemory] = []  # the first, and a spare one if it was needed
         self._unused = 0  # references to the first memory while no array in it is used
         self._memory = np.zeros(1, np.int64)  # number of the one that is written
-        self._telling: Any = None  # request: rank 0 tells the number
+        self._broadcast: Any = None  # request: that number, from rank 0
         self._ids: Whole = np.zeros(0, np.int64)
         self._arrays: Sequence[Array] = ()  # that this rank writes
 
@@ -83,7 +83,7 @@ class GivenRows:
             if sent:
                 self._send(arrays)
             return arrays
-        self._finish_telling()
+        self._finish_broadcast()
         for other in np.flatnonzero(counts).tolist():
             self._receive(other, int(counts[other]), arrays)
         return [array.copy() for array in arrays] if number == SPARE else arrays
@@ -95,9 +95,9 @@ class GivenRows:
             self._unused = self._references()
         if self._memories[FIRST].is_shared:
             self._memory[0] = SPARE if self._references() > self._unused else FIRST
-            self._telling = self._communicator.Ibcast(self._memory, 0)
+            self._broadcast = self._communicator.Ibcast(self._memory, 0)
             if self._communicator.rank:
-                self._finish_telling()
+                self._finish_broadcast()
             if self._memory[0] == len(self._memories):
                 self._make_memory()
         return self._memories[int(self._memory[0])].numbers
@@ -110,10 +110,10 @@ class GivenRows:
         """References to the first memory; each array in it, or part of one, adds to them."""
         return sys.getrefcount(self._memories[FIRST].numbers)
 
-    def _finish_telling(self) -> None:
-        if self._telling is not None:
-            wait_for_all(self._telling)
-            self._telling = None
+    def _finish_broadcast(self) -> None:
+        if self._broadcast is not None:
+            wait_for_all(self._broadcast)
+            self._broadcast = None
 
     def _parts(self, numbers: Array, count: int) -> Sequence[Array]:
         """Arrays (count, *shape) in one piece of memory (numbers,)."""
