@@ -15,7 +15,7 @@ from quintet.components.shared.domain.given_rows import GivenRows, Giving
 from quintet.interfaces.waited import TRAFFIC
 
 WORLD = MPI.COMM_WORLD
-COUNT, TIMES, KEPT = 1000, 6, (1, 2, 3)  # rows, and times that are given, some of them kept
+COUNT, TIMES, KEPT = 1000, 6, (1, 2, 3)  # rows, and times that are given, those that stay in use
 
 
 def rows_of(ids, time):
@@ -39,9 +39,9 @@ def count_messages():
     """Note the rows in each message of this rank."""
     send, sent = GivenRows._send, []
 
-    def noted(given, arrays):
+    def noted(rows_given, arrays):
         sent.append(len(arrays[0]))
-        send(given, arrays)
+        send(rows_given, arrays)
 
     GivenRows._send = noted
     return sent
@@ -52,19 +52,19 @@ def main(far):
     if far == "all" or (far == "rank 1" and WORLD.rank == 1):
         shared_memory._mapped = lambda *address: None
     giving, random = Giving(WORLD, COUNT), np.random.default_rng(3)
-    right, kept, written = [], [], []
+    right, arrays_in_use, written = [], [], []
     for time in range(TIMES):
         ids = np.flatnonzero(random.integers(0, WORLD.size, COUNT) == WORLD.rank)
         arrays = giving.give(ids, rows_of(ids, time))
         right.append(is_right(arrays, slice(None), time) if WORLD.rank == 0 else True)
         if time in KEPT:
-            kept.append(([array[3:7] for array in arrays], time))
+            arrays_in_use.append(([array[3:7] for array in arrays], time))
         written.append(len(ids))
         del arrays
     if WORLD.rank == 0:
-        right += [is_right(arrays, slice(3, 7), time) for arrays, time in kept]
+        right += [is_right(arrays, slice(3, 7), time) for arrays, time in arrays_in_use]
     used = mapped()
-    del giving, kept
+    del giving, arrays_in_use
     counts = [right, used, mapped(), sent, written, TRAFFIC.gathered_bytes]
     counts_of_all = WORLD.gather(counts)
     if WORLD.rank == 0:
