@@ -58,6 +58,7 @@ class SharedLists(ContactLists):
         self.incoming_begin = rows.sparse.zeros((self.shares.rows + 1,), np.int64)
         self.of_balls = rows.sparse.zeros((self.shares.rows,), np.int64)  # contacts of balls alone
         self.listed = slice(0, 0)  # rows in `begin`
+        self.motion_halo = Halo(self.shares.communicator, (), (), (COLUMNS,))  # no pairs yet
 
     def renew(self, state: State) -> None:
         """Sort the rows of all balls, cut them into shares, and list the pairs of own rows."""

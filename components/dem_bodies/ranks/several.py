@@ -65,11 +65,8 @@ class SeveralRanks(OneRank):
         shares, lists = self.shares, self.lists
         shares.work.begin()
         self._blocks(state, kernels.DRIFT, dt, loaded)
-        if not self._listed_holds():
-            if not self._renew(state):
-                return False
-        else:
-            self._exchange_motion(state)
+        if not self._exchange_motion(state) and not self._renew(state):
+            return False
         self._blocks(state, kernels.BALLS, dt, loaded)
         self._number_deepest()
         lists.load_halo.begin(lists.balls.outgoing)
@@ -125,12 +122,19 @@ class SeveralRanks(OneRank):
         self.sums[:, TRAVEL] = 0.0
         return True
 
-    def _exchange_motion(self, state: State) -> None:
-        """Bring up to date what own pairs need of other ranks' rows."""
+    def _exchange_motion(self, state: State) -> bool:
+        """Bring up to date what listed pairs need of other ranks' rows; False: lists do not hold.
+
+        Rows travel while ranks wait for the largest displacement of all.
+        """
         if self.mixed:
-            self.rows.exchange_all()
-        else:
-            self.lists.motion_halo.exchange(state.motion)
+            if listed_holds := self._listed_holds():
+                self.rows.exchange_all()
+            return listed_holds
+        self.lists.motion_halo.begin(state.motion)
+        listed_holds = self._listed_holds()
+        self.lists.motion_halo.finish(state.motion)
+        return listed_holds
 
     def _number_deepest(self) -> None:
         """Number the pairs of own blocks among those of all ranks."""
