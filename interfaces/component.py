@@ -210,7 +210,8 @@ class Component(ABC):
             Of one of its ports. Of ``motion`` and ``faces`` one row each of ``spacing``, ``depth``
             (below the outermost samples) and ``inset`` (of these below the surface), all in m, of
             ``mirror`` (1 if the image of each sample in the surface is asked for) and
-            ``dimensions`` (2 or 3). Of other meshes ``points`` (n, 3) m that hang on it.
+            ``dimensions`` (2 or 3). Of other meshes ``points`` (n, 3) m that hang on it. Of
+            ``contact_surface`` a row ``inner``, where the component takes contact_surface_load.
 
         Returns
         -------
@@ -219,7 +220,9 @@ class Component(ABC):
             ``volume`` m3, number of the ``body``, ``image`` m if asked for. Of faces ``node``
             (n, 4) and, of these nodes, ``weight``, ``along`` and ``across`` (n, 4), shape
             functions and their derivatives, ``depth`` m, ``side`` m, ``normal``, ``volume`` m3.
-            Of points ``node``, ``weight``, ``face``, and in m ``gap``, ``size`` and ``beyond``.
+            Of points ``node``, ``weight``, ``face``, and in m ``gap``, ``size`` and ``beyond``. Of
+            inner faces the static fields of the port again, with the nodes and faces that were
+            described first.
             `components.shared.geometry` computes all of these from dimensions or a mesh.
         """
         raise PortError(

@@ -16,7 +16,8 @@ ORIENTATION = Field("orientation", (4,), "1", rate="angular_velocity", kind="rot
 ANGULAR_VELOCITY = Field("angular_velocity", (3,), "rad/s")
 TEMPERATURE = Field("temperature", (), "K")
 HEAT_FLOW = Field("heat_flow", (), "W", "impulse")  # into the side that takes it
-# Of items that may die, as a face that erodes: 1 while the item exists, then 0, permanently.
+# Of items that may die, as a face that erodes: 1 while the item exists, then 0, permanently; inner
+# faces of a mesh begin at 0, until erosion opens them.
 ACTIVE = Field("active", (), "1", kind="flag")
 RANK = Field("rank", (), "1")  # in views of a component of several MPI ranks: who owns each point
 
@@ -115,7 +116,9 @@ NODE_MASS = Port("node_mass", fields=(Field("added", (), "kg"),))
 # stiffness of contact follows from; the other side computes the forces and gives their reaction on
 # the nodes. Forces follow from places at the begin of a window, at which the mesh is told of them;
 # velocities cross as displacements over the last window, so that work is counted by what moved.
-# Faces that erosion opens are not listed, so that nothing touches them: contact warns of it.
+# Meshes that may erode take contact's forces by a port of their own. When `sample` is asked for
+# `inner` (1), such a mesh answers with all static fields of CONTACT_SURFACE: behind the nodes and
+# faces that it described stand those that erosion may open, and OPEN_FACES has a row for each face.
 PLACE = replace(POSITION, rate="")
 LAYER = (
     Field("mass", (), "kg"),  # of each node
@@ -126,6 +129,7 @@ LAYER = (
 )
 CONTACT_SURFACE = Port("contact_surface", fields=(PLACE, DISPLACEMENT_RATE), static=(*MESH, *LAYER))
 PLANAR_CONTACT_SURFACE = replace(CONTACT_SURFACE, static=(*CONTACT_SURFACE.static, DIMENSIONS))
+CONTACT_SURFACE_LOAD = Port("contact_surface_load", fields=(FORCE,))
 OPEN_FACES = Port("open_faces", fields=(ACTIVE,))  # whether each face is part of the surface now
 CONTACT_FACES = Port(
     "contact_faces",

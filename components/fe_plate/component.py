@@ -7,8 +7,8 @@ import numpy as np
 
 from quintet.components.fe_plate import MANIFEST
 from quintet.components.fe_plate.added_mass import AddedMass
-from quintet.components.fe_plate.build import initial_state, structure
-from quintet.components.fe_plate.contact_surface import areas, described_layer
+from quintet.components.fe_plate.build import Structure, initial_state, structure
+from quintet.components.fe_plate.contact_surface import OpeningSurface, areas, described_layer
 from quintet.components.fe_plate.diagnostics import check, inside_out, motion, not_finite, totals
 from quintet.components.fe_plate.features import Loads, Pressures, Stepped, ranks, stepping_kernel
 from quintet.components.fe_plate.gauges import measured, readings
@@ -23,7 +23,7 @@ from quintet.components.fe_plate.kernels.nodes import (
 from quintet.components.fe_plate.params import FePlateParams
 from quintet.components.fe_plate.points import integration_notes, points_of
 from quintet.components.fe_plate.ports import SHOWS
-from quintet.components.fe_plate.state import Accumulated, Array
+from quintet.components.fe_plate.state import Accumulated, Array, first_rows
 from quintet.components.fe_plate.supports import supports
 from quintet.components.fe_plate.view import shown, view
 from quintet.components.shared.geometry.surface_samples_mesh import mesh_answer
@@ -45,6 +45,7 @@ POSITION, VELOCITY = "faces.position", "faces.velocity"
 TOUCHED_POSITION, TOUCHED_VELOCITY = "contact_surface.position", "contact_surface.velocity"
 MEAN_VELOCITY, ACTIVE = "node_glue.velocity", "face_activity.active"
 OPEN = "open_faces.active"
+INNER, TOUCHING = "contact_surface.inner", "contact_surface_load.force"
 EARLY = ("node_glue", "contact_surface")  # ports whose partners push as at a step's begin
 
 
@@ -85,6 +86,9 @@ class FePlate(Component):
         owner, area = whole.mesh.owner[whole.coupled], areas(whole.mesh.node, self.faces)
         self.layer = described_layer(whole, self.surface, owner, area)
         self.on_surface = self.all_ranks.nodes_of(self.surface)
+        self.loaded = self.on_surface  # nodes that partners push
+        self.whole: Structure | None = whole  # until partners are joined
+        self.opening: OpeningSurface | None = None  # if a partner touches what erosion opens
         self.state = initial_state(params, built)
         self.kernel = stepping_kernel(points_of(params))
         self.all_loads = Loads(self.on_surface, Pressures(params.pressures, built))
@@ -114,12 +118,21 @@ class FePlate(Component):
         return described | {f"contact_surface.{key}": array.copy() for key, array in layer.items()}
 
     def sample(self, request: Fields) -> Fields:
-        """Sample the structure below its faces, or hang points on these."""
+        """Sample the structure below its faces, hang points on these, or list inner faces."""
+        if INNER in request and self.whole:
+            place = self.built.places, self.params, self.surface, self.all_ranks
+            self.opening = self.opening or OpeningSurface(self.whole, *place)
+            return {f"contact_surface.{key}": a for key, a in self.opening.described.items()}
         port = next(iter(request)).partition(".")[0]
         return mesh_answer(port, request, self.describe())
 
     def bind(self, static: Fields, joined: Keys) -> None:
         """Take the mass of particles that are glued to the nodes."""
+        self.whole = None
+        if self.opening:
+            self.loaded = self.all_loads.surface = self.opening.nodes
+            self.loads = np.zeros((self.loaded.size, 3))
+            self.half_kick = np.zeros_like(self.loads[self.loaded.ids])
         self.kicks_early = not joined.isdisjoint(EARLY)
         # What pushes in the first half of a step alone: the link keeps that balance.
         self.judge.closed = not self.kicks_early
@@ -135,8 +148,10 @@ class FePlate(Component):
 
     def take(self, fields: Fields) -> None:
         """Set the forces [N] on the surface's nodes, none if left out, and their added mass."""
-        force = fields.get("node_load.force")
-        self.loads[:] = 0.0 if force is None else force
+        force, touching = fields.get("node_load.force"), fields.get(TOUCHING)
+        self.loads[:] = 0.0 if touching is None else touching
+        if force is not None:
+            self.loads[: len(force)] += force
         added = fields.get("node_mass.added")
         if added is not None and not np.array_equal(added, self.added_mass.added):
             self.accumulated.brought += self.added_mass.replace(
@@ -146,7 +161,7 @@ class FePlate(Component):
     def step(self, dt: float) -> None:
         """Advance by exactly dt [s]: half kick, drift, stresses, half kick."""
         total, damping = self.accumulated, self.params.mass_damping
-        rows, loads = self.on_surface.rows, self.loads[self.on_surface.ids]
+        rows, loads = self.loaded.rows, self.loads[self.loaded.ids]
         loaded = self.all_loads.write(self.state, self.loads, total.time)
         if self.kicks_early:
             self._kick_early(dt, loads)
@@ -177,7 +192,7 @@ class FePlate(Component):
         Forces of glued particles and of contact are those at the step's begin: half a step late
         they would feed energy in.
         """
-        rows = self.on_surface.rows
+        rows = self.loaded.rows
         push = 0.5 * dt * self.model.inverse_mass[rows, None] * loads * self.model.free[rows]
         self.state.velocity[rows] += push
         self.half_kick = push
@@ -218,21 +233,19 @@ class FePlate(Component):
 
     def give(self, wanted: Keys) -> Fields:
         """Copy out the motion of the surface, its faces that have not eroded, and gauges."""
-        motion_of_nodes = {
-            POSITION: self.state.position,
-            VELOCITY: self.state.velocity,
-            TOUCHED_POSITION: self.state.position,
-            MEAN_VELOCITY: self.state.mean_velocity,
-            TOUCHED_VELOCITY: self.state.mean_velocity,
-        }
-        some = {key: array for key, array in motion_of_nodes.items() if key in wanted}
+        position, velocity, mean = self.state.position, self.state.velocity, self.state.mean_velocity
+        motion = {POSITION: position, VELOCITY: velocity, MEAN_VELOCITY: mean}
+        touched = {TOUCHED_POSITION: position, TOUCHED_VELOCITY: mean}
+        nodes = self.opening.nodes if self.opening else self.on_surface
         values: dict[str, Array] = {}
-        if some:
-            arrays = self.on_surface.give(list(some.values()))
-            values = dict(zip(some, arrays, strict=True))
-        if wanted & {ACTIVE, OPEN}:
+        for rows, arrays in ((self.on_surface, motion), (nodes, touched)):
+            if some := {key: array for key, array in arrays.items() if key in wanted}:
+                values |= zip(some, rows.give(list(some.values())), strict=True)
+        if OPEN in wanted and self.opening:
+            values[OPEN] = self.opening.open_faces(self.state)
+        if missing := wanted & {ACTIVE, OPEN} - values.keys():
             active = self.owners.gather(self.places_of_owners.active(self.state))
-            values |= {key: active.copy() for key in (ACTIVE, OPEN) if key in wanted}
+            values |= {key: active.copy() for key in missing}
         return values | readings(self.measured, self.built, self.state, wanted, self.all_ranks)
 
     def save(self) -> Fields:
@@ -241,7 +254,7 @@ class FePlate(Component):
         saved["accumulated"] = np.array([*astuple(self.accumulated), self.bound])
         saved["judge"] = self.judge.save()
         saved["loads"] = self.loads.copy()
-        saved["half_kick"] = self.on_surface.gather(self.half_kick.copy())
+        saved["half_kick"] = self.loaded.gather(self.half_kick.copy())
         return saved | {"added_mass": self.added_mass.added.copy()}
 
     def load(self, state: Fields) -> None:
@@ -250,15 +263,19 @@ class FePlate(Component):
         self.all_ranks.restore(self.state, state)
         self.all_loads.left = True
         self.loads[:] = state["loads"]
-        self.half_kick = np.array(state["half_kick"][self.on_surface.ids])
+        self.half_kick = np.array(state["half_kick"][self.loaded.ids])
         self.added_mass.restore(state["added_mass"], self.model)
         time, brought, steps, self.bound = state["accumulated"].tolist()
         self.accumulated = Accumulated(time, brought, int(steps))
         self.judge.load(state["judge"])
 
     def begin_from(self, state: Fields) -> None:
-        """Begin from the state of another run; times of pressures count from now on."""
-        super().begin_from(state)
+        """Begin from the state of another run; times of pressures count from now on.
+
+        Its partners may have pushed fewer or more nodes: those of the coupled faces come first.
+        """
+        pushed = {key: first_rows(state[key], self.loaded.size) for key in ("loads", "half_kick")}
+        super().begin_from({**state, **pushed})
         self.accumulated.time = 0.0
 
     def totals(self) -> Totals:
@@ -268,7 +285,7 @@ class FePlate(Component):
         and mass damping.
         """
         mass = self.added_mass.total()[: self.model.moving]
-        kicks = (self.on_surface.rows, self.half_kick) if self.kicks_early else None
+        kicks = (self.loaded.rows, self.half_kick) if self.kicks_early else None
         energies = motion(self.state, mass, self.model.gravity, kicks)
         return totals(self.state, self.built, mass, energies, self.all_ranks)
 

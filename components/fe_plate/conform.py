@@ -34,6 +34,7 @@ def cases() -> tuple[ConformCase, ...]:
         _case("tetrahedra", {**clamped, "parts": [{**steel, **TETRAHEDRA}]}, nodes=130),
         _case("plane strain", PLANE, nodes=10),
         _case("face of a block", {**BLOCK, "coupled_faces": [FACE]}, nodes=9),
+        _case("eroding block", {"parts": [FRAGILE]}, touched=True),
     )
 
 
@@ -42,18 +43,21 @@ PLANE = {
     "parts": [{**BLOCK["parts"][0], "highest": [0.03, 1.0, 0.02], "elements": [3, 1, 2]}],
     "dimensions": 2,
 }
+FRAGILE = {**BLOCK["parts"][0], "material": {**BLOCK["parts"][0]["material"], "spall_stress": 1e8}}
 FACE = {"lowest": [0.03, 0.0, 0.0], "highest": [0.03, 0.02, 0.02]}
 
 
 def _case(
-    name: str, params: dict[str, Any], nodes: int = NODES, forces: tuple[str, ...] = ()
-) -> ConformCase:
+    name: str, params: dict[str, Any], nodes: int = NODES, forces: tuple[str, ...] = (),
+    touched: bool = False,
+) -> ConformCase:  # fmt: skip
+    load = "contact_surface_load.force" if touched else "node_load.force"
     return ConformCase(
         name,
         params,
         static={"node_load.added_mass": np.zeros(nodes)},
-        rest={"node_load.force": np.zeros((nodes, 3)), "node_mass.added": np.zeros(nodes)},
-        scale={"node_load.force": 100.0},
+        rest={load: np.zeros((nodes, 3)), "node_mass.added": np.zeros(nodes)},
+        scale={load: 100.0},
         dt=STEP,
         forces=forces,
     )

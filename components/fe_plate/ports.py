@@ -1,11 +1,13 @@
 """What the structure takes and gives: loads at nodes of its surface; the motion of its faces."""
 
+from quintet.components.fe_plate.erosion import eroding_parts
 from quintet.components.fe_plate.params import FePlateParams
 from quintet.interfaces.component import Field, Port
 from quintet.interfaces.manifest import Ports
 from quintet.interfaces.ports import (
     ACTIVE,
     CONTACT_SURFACE,
+    CONTACT_SURFACE_LOAD,
     FACE_ACTIVITY,
     FACES,
     NODE_GLUE,
@@ -60,4 +62,5 @@ def ports(params: FePlateParams) -> Ports:
     planar = params.dimensions == 2
     mesh = (PLANAR_FACES, PLANAR_NODE_GLUE) if planar else (FACES, NODE_GLUE)
     touched = (PLANAR_CONTACT_SURFACE if planar else CONTACT_SURFACE, OPEN_FACES)
-    return (NODE_LOAD, NODE_MASS), (*mesh, FACE_ACTIVITY, *touched, *measured)
+    taken = (NODE_LOAD, NODE_MASS, *((CONTACT_SURFACE_LOAD,) if eroding_parts(params) else ()))
+    return taken, (*mesh, FACE_ACTIVITY, *touched, *measured)

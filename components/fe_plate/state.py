@@ -182,3 +182,10 @@ def at_points(blocks: Array, row: int, point: Whole) -> Array:
         return np.asarray(blocks[:, row].ravel()[point])
     before = point // LANES * ((blocks.shape[1] - 1) * LANES)  # numbers of other rows
     return blocks.reshape(-1).take(before + (point + row * LANES))
+
+
+def first_rows(array: Array, count: int) -> Array:
+    """First rows (count, ...) of an array; those that it lacks are 0."""
+    rows = np.zeros((count, *array.shape[1:]))
+    rows[: len(array)] = array[:count]
+    return rows

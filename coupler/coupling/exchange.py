@@ -109,10 +109,13 @@ class Exchange:
     def samples_of(self, name: str) -> dict[str, Array]:
         """Samples of a component's rigid bodies, each with its request: what a replay answers.
 
-        Those of a mesh follow from its nodes and faces.
+        Those of a mesh follow from its nodes and faces. Nodes and faces that a mesh listed on
+        request stand in the place of those that it described.
         """
         answers = [(request, answer) for owner, request, answer in self.samples if owner == name]
-        return {
+        listed = [answer for _, answer in answers if any(key.endswith(".start") for key in answer)]
+        tables = {key: array for answer in listed for key, array in answer.items()}
+        return tables | {
             f"samples.{number}.{key}": array
             for number, (request, answer) in enumerate(answers)
             if any(key.endswith(".arm") for key in answer)

@@ -11,6 +11,7 @@ import h5py
 import laboratory
 import numpy as np
 import pytest
+from test_contact_erosion import digging
 from test_glued_chains import TRANSIT
 from test_groups import COMPONENTS as MASSES
 from test_groups import LINKS as RIDES
@@ -55,6 +56,11 @@ def _serial(folder):
     return _groups(folder, "serial")
 
 
+def _eroding(folder):
+    """Contact with faces that erosion opens."""
+    return digging(folder, layers=4, end=0.1, output={"snapshots": 0.02})
+
+
 SCENES = pytest.mark.parametrize("make", [_glued, _groups])
 
 
@@ -89,7 +95,7 @@ def test_every_transport_gives_the_same_bits(tmp_path, run_alone, make, transpor
     assert compare(memory, _run(path, tmp_path / transport, "--transport", transport)) is None
 
 
-@SCENES
+@pytest.mark.parametrize("make", [_glued, _groups, _eroding])
 def test_from_a_snapshot_it_goes_on_with_the_same_bits(tmp_path, monkeypatch, make):
     monkeypatch.setattr(snapshots, "remove", lambda paths: None)
     monkeypatch.syspath_prepend(tmp_path)
@@ -107,11 +113,11 @@ def test_from_a_snapshot_it_goes_on_with_the_same_bits(tmp_path, monkeypatch, ma
             assert (first / name).read_bytes() == (resumed / name).read_bytes()
 
 
-@pytest.mark.parametrize("make", [_glued, _serial])
+@pytest.mark.parametrize("make", [_glued, _serial, _eroding])
 def test_beside_a_replay_the_others_get_the_same_bits(tmp_path, run_alone, make):
     """Integrals are handed on as they were recorded, windows follow the recorded steps."""
     path, memory = run_alone(make)
-    replaced = "rods" if make is _glued else "slow"
+    replaced = {_glued: "rods", _serial: "slow", _eroding: "plate"}[make]
     replayed = _run(path, tmp_path / "other", "--swap", f"{replaced}=replay@{memory}")
     with (
         h5py.File(memory / "recording.h5") as first,

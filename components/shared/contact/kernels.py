@@ -146,6 +146,30 @@ def touch(
     return Sums(energy, dissipated, half_kick, of_points, held_by, impact, deepest, spread, limit)
 
 
+@njit(**EXACT)
+def released_energy(points: Points, surface: Surface, near: Near, dt: float) -> float:
+    """Energy [J] that is lost if all normal springs vanish before a step of dt [s].
+
+    It is what they hold, and what half of the step's impulse would do on both sides: their motion
+    at the step's begin still lacks that half.
+    """
+    nodes, weight, energy = near.nodes, near.weight, 0.0
+    n, slid = np.empty(3), np.empty(3)
+    for q in range(near.row.shape[0]):
+        if near.gap[q] >= 0.0:
+            continue
+        i, lightness = near.row[q], 1.0 / points.mass[near.row[q]]
+        for d in range(3):
+            n[d] = near.normal[q, d]
+        for c in range(nodes.shape[1]):
+            lightness += weight[q, c] ** 2 / surface.mass[nodes[q, c]]
+        closing = write_slid(points, i, surface, nodes, weight, q, n, 0.0, slid)
+        law = law_of(points, i, surface, near.listed[near.last[q]], -near.gap[q], 0.0)
+        push, stored = law[0], law[1]
+        energy += stored - 0.5 * dt * push * (closing - 0.25 * dt * push * lightness)
+    return energy
+
+
 @njit(**LANEWISE)
 def shortest_side(x):  # type: ignore[no-untyped-def]
     """Shortest side [m] of a face (4, 3); the corner of a triangle that stands twice has none."""

@@ -7,7 +7,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from quintet.components.shared.contact.footprint import measure
-from quintet.components.shared.contact.kernels import Loads, Points, Surface, furthest_from, touch
+from quintet.components.shared.contact.kernels import (
+    Loads,
+    Points,
+    Surface,
+    furthest_from,
+    released_energy,
+    touch,
+)
 from quintet.components.shared.contact.moduli import (
     longitudinal_modulus,
     plane_modulus,
@@ -20,7 +27,7 @@ from quintet.interfaces.component import Array, Fields
 from quintet.interfaces.errors import SceneError
 
 PORT, ACTIVE, FORCE = "contact_faces", "contact_activity.active", "contact_load.force"
-POSITION, VELOCITY = f"{PORT}.position", f"{PORT}.velocity"
+POSITION = f"{PORT}.position"
 MOST_SPREAD = 0.2  # radius of a contact over the shortest edge of elements
 HEAD = "contact/"  # prefix of the keys in saved states
 
@@ -36,18 +43,18 @@ class Numbers:
     impact: float = 0.0  # 1/s2, largest k/m of a particle, as deep as it may come
     spread: float = 0.0  # 1, largest radius of a sphere's contact over the least edge of elements
     deepest: float = 0.0  # 1, largest penetration so far, over the radius of the particle
-    work: float = 0.0  # J, done on the particles by the motion of the faces so far
+    work: float = 0.0  # J, done on the particles by the motion of the faces until the last step
+    lately: float = 0.0  # J, likewise in the last step, once its end is known
     # J, that the kinetic energy lacks: velocities have none of the coming step's force yet, and at
     # the present time should have half of it.
     half_kick: float = 0.0
     last: float = 0.0  # s, the last step
-    opened: float = 0.0  # 1 once particles were near where faces have eroded
     limit: float = math.inf  # s, of the next step, so that nothing passes through a face
 
     @property
     def brought(self) -> float:
         """Energy [J] in contact and in half kicks, less the work of the faces on the particles."""
-        return self.half_kick + self.energy + self.dissipated - self.work
+        return self.half_kick + self.energy + self.dissipated - self.work - self.lately
 
 
 class PenaltyContact:
@@ -94,7 +101,9 @@ class PenaltyContact:
         self.safety, self.step_of_faces = float(of["safety"].min()), float(of["step"].min())
         nodes = len(self.mass)
         self.active = np.ones(len(self.corner))
-        self.position, self.velocity = np.zeros((nodes, 3)), np.zeros((nodes, 3))  # m, m/s
+        self.coming = self.active  # of the next step
+        self.touchable = np.unique(self.corner)  # nodes of active faces
+        self.position = np.zeros((nodes, 3))  # m
         self.before = np.zeros((nodes, 3))  # m, places of nodes at the last step's begin
         self.reaction = np.zeros((nodes, 3))  # N, on the nodes in the last step
         self.slip = np.zeros((particles, 3))  # m, by the number of a particle
@@ -112,12 +121,12 @@ class PenaltyContact:
         self.numbers.limit = 0.5 * self.smallest / fastest if fastest > 0.0 else math.inf
 
     def take(self, fields: Fields) -> None:
-        """Take places of nodes at a step's begin, velocities that work counts, active faces."""
+        """Take places of nodes at a step's begin, and which faces are active."""
         self.position = np.array(fields.get(POSITION, self.position))
-        self.velocity = np.array(fields.get(VELOCITY, self.velocity))
-        active = fields.get(ACTIVE, self.active)
-        if not np.array_equal(active, self.active):
-            self.active, self.near = np.array(active), None
+        self.numbers.lately = -float((self.reaction * (self.position - self.before)).sum())
+        active = fields.get(ACTIVE, self.coming)
+        if not np.array_equal(active, self.coming):
+            self.coming = np.array(active)
 
     def forget_rows(self) -> None:
         """Forget what is near, as the rows of particles have changed."""
@@ -132,21 +141,47 @@ class PenaltyContact:
         """
         nodes, numbers, last = len(self.mass), self.numbers, self.numbers.last
         moving = (self.position - self.before) / last if last else np.zeros((nodes, 3))
-        near, apart = self._list(points, moving, last)
-        self.reaction, stiffness = np.zeros((nodes, 3)), np.zeros(nodes)
         surface = Surface(self.corner, *self.faces, self.position, moving)
+        since = last  # s, that places have changed for
+        if self.coming is not self.active:
+            self._change_faces(points, surface, last)
+            since = 0.0
+        near, apart, passed = self._measure(points, moving, since)
+        self.reaction, stiffness = np.zeros((nodes, 3)), np.zeros(nodes)
         loads = Loads(self.reaction, stiffness, self.slip, self.held, self.kicked)
-        places = self.corner, self.position, self.across, 2.0 * self.radius, self.slack
-        passed = measure(points.place, points.radius, near, *places)
         sums = touch(points, surface, near, last, dt, loads)
         self.before, numbers.last = self.position.copy(), dt
-        numbers.work -= dt * float((self.reaction * self.velocity).sum())
+        numbers.work, numbers.lately = numbers.work + numbers.lately, 0.0
         numbers.energy, numbers.half_kick = sums.energy, sums.half_kick
         numbers.dissipated += sums.dissipated
         numbers.points, numbers.nodes = sums.points, sums.nodes
         numbers.impact, numbers.spread = sums.impact, max(numbers.spread, sums.spread)
         numbers.deepest = max(numbers.deepest, passed, sums.depth)
         numbers.limit = min(sums.limit, apart)
+
+    def _change_faces(self, points: Points, surface: Surface, dt: float) -> None:
+        """Take the faces that are active now; springs on those that eroded lose their energy.
+
+        What the particles press on lies further away than what has eroded: no spring gains.
+        """
+        is_first = dt == 0.0  # nothing has been touched yet
+        if not is_first:
+            before, _, _ = self._measure(points, surface.velocity, dt)
+            self.numbers.dissipated += released_energy(points, surface, before, dt)
+        self.active, self.near = self.coming, None
+        self.touchable = np.unique(self.corner[self.active > 0.0])
+        if not is_first:
+            after, _, _ = self._measure(points, surface.velocity, 0.0)
+            self.numbers.dissipated -= released_energy(points, surface, after, dt)
+
+    def _measure(self, points: Points, moving: Array, dt: float) -> tuple[Near, float, float]:
+        """Faces near particles with gaps and weights as they are now, after a step of dt [s].
+
+        Returns also the time [s] of `_list`, and the largest depth of `measure`.
+        """
+        near, apart = self._list(points, moving, dt)
+        places = self.corner, self.position, self.across, 2.0 * self.radius, self.slack
+        return near, apart, measure(points.place, points.radius, near, *places)
 
     def _list(self, points: Points, moving: Array, dt: float) -> tuple[Near, float]:
         """List the faces near particles, if they may have changed in the last step, of dt [s].
@@ -155,7 +190,8 @@ class PenaltyContact:
         to a radius below a face; the smallest takes least. It does not depend on when faces were
         listed.
         """
-        mean = moving.mean(axis=0)
+        moving = moving[self.touchable]
+        mean = moving.mean(axis=0) if len(moving) else np.zeros(3)
         spread = furthest_from(points.velocity, mean) + furthest_from(moving, mean)
         apart = self.smallest / spread if spread > 0.0 and self.active.any() else math.inf
         if self.near is not None:
@@ -174,7 +210,6 @@ class PenaltyContact:
             row, begin, face = list_near(points.place, reach, cells, faces)
             self.near = near_of(row, begin, face, several)
         self._let_go(points.identity[self.near.row])
-        self._note_opened(points)
         return self.near, apart
 
     def _let_go(self, near: Array) -> None:
@@ -183,15 +218,6 @@ class PenaltyContact:
         left[near] = False
         self.numbers.dissipated += float(self.held[left].sum())
         self.slip[left], self.held[left] = 0.0, 0.0
-
-    def _note_opened(self, points: Points) -> None:
-        """Take down whether particles are near where faces have eroded."""
-        gone = np.flatnonzero(self.active == 0.0)
-        if self.numbers.opened or not len(gone) or not np.isfinite(self.position).all():
-            return
-        cells = cells_of(np.ascontiguousarray(self.position[self.corner[gone]]))
-        row, _, _ = list_near(points.place, 2.0 * self.radius + self.slack, cells, gone)
-        self.numbers.opened = float(len(row) > 0)
 
     def stable_step(self, bound: float) -> float:
         """Largest step [s] of particles in contact, of which those without have a bound [s].
@@ -208,6 +234,7 @@ class PenaltyContact:
     def save(self) -> Fields:
         """Copy out all state."""
         return {
+            f"{HEAD}active": self.active.copy(),
             f"{HEAD}before": self.before.copy(),
             f"{HEAD}reaction": self.reaction.copy(),
             f"{HEAD}slip": self.slip.copy(),
@@ -218,6 +245,8 @@ class PenaltyContact:
 
     def load(self, state: Fields) -> None:
         """Restore a saved state, bit for bit."""
+        self.active = self.coming = np.array(state[f"{HEAD}active"])
+        self.touchable = np.unique(self.corner[self.active > 0.0])
         self.before = np.array(state[f"{HEAD}before"])
         self.reaction = np.array(state[f"{HEAD}reaction"])
         self.slip = np.array(state[f"{HEAD}slip"])
@@ -235,12 +264,12 @@ class PenaltyContact:
         start = self.save()
         is_same = all(key in state and state[key].shape == start[key].shape for key in start)
         numbers = Numbers(*state[f"{HEAD}numbers"].tolist()) if is_same else self.numbers
-        numbers = replace(numbers, dissipated=0.0, deepest=0.0, work=0.0, opened=0.0, spread=0.0)
+        numbers = replace(numbers, dissipated=0.0, deepest=0.0, work=0.0, lately=0.0, spread=0.0)
         history = {key: state[key] for key in start} if is_same else start
         return {**history, f"{HEAD}numbers": np.array(astuple(numbers))}
 
     def warnings(self) -> dict[str, str]:
-        """Warn of particles that passed through faces, or nearly did, and of eroded faces."""
+        """Warn of particles that passed through faces, or nearly did."""
         texts = {}
         if self.numbers.deepest > 1.0:
             texts["contact"] = (
@@ -254,11 +283,5 @@ class PenaltyContact:
                 "the sides of an element, as elements that resolve a dent add it to that of "
                 f"Hertz's law; found {self.numbers.spread:.2g}. Take larger elements, or "
                 "particles of sph_solid."
-            )
-        if self.numbers.opened:
-            texts["erosion"] = (
-                "faces that erosion opens are not touched, so particles may pass there; found "
-                "faces eroded near particles. End the run earlier, or give the mesh a material "
-                "without failure."
             )
         return texts

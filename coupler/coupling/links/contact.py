@@ -25,6 +25,7 @@ from quintet.interfaces.params import NotNegative, Positive, parameters
 from quintet.interfaces.ports import (
     CONTACT_ACTIVITY,
     CONTACT_LOAD,
+    CONTACT_SURFACE_LOAD,
     NODE_LOAD,
     OPEN_FACES,
     PLANAR_CONTACT_FACES,
@@ -97,8 +98,10 @@ def join(
             faces = _named(ports[particles][0], PLANAR_CONTACT_FACES)
             surface = _named(ports[mesh][1], PLANAR_CONTACT_SURFACE)
             refuse_other_dimensions(name, {particles: faces, mesh: surface})
-            opens = any(port.name == OPEN_FACES.name for port in ports[mesh][1])
-            return Contact(name, particles, mesh, coefficients, loaded, opens)
+            takes, gives = ({port.name for port in side} for side in ports[mesh])
+            load = CONTACT_SURFACE_LOAD if CONTACT_SURFACE_LOAD.name in takes else NODE_LOAD
+            ways = Ways(load.name if loaded else "", OPEN_FACES.name in gives)
+            return Contact(name, particles, mesh, coefficients, ways)
         complaints.append(lacks)
     raise SceneError(f"link {name}: contact needs: {fewest(complaints)}. Link others.")
 
@@ -107,20 +110,31 @@ def _named(ports: tuple[Port, ...], wanted: Port) -> Port:
     return next(port for port in ports if port.name == wanted.name)
 
 
+class Ways(NamedTuple):
+    """What crosses beside motion."""
+
+    load: str  # port by which the mesh takes forces; none of a stand-in
+    opens: bool  # whether the mesh says which of its faces are open
+
+    @property
+    def erodes(self) -> bool:
+        """Whether erosion may open inner faces, which the mesh lists on request."""
+        return self.load == CONTACT_SURFACE_LOAD.name
+
+
 class Contact(Link):
     """Motion of faces to what touches them, forces back to their nodes."""
 
     def __init__(
-        self, name: str, particles: str, mesh: str, coefficients: Coefficients, loaded: bool,
-        opens: bool,
-    ) -> None:  # fmt: skip
+        self, name: str, particles: str, mesh: str, coefficients: Coefficients, ways: Ways
+    ) -> None:
         self.name, self.particles, self.mesh = name, particles, mesh
-        self.coefficients, self.opens = coefficients, opens
+        self.coefficients, self.ways = coefficients, ways
         surface = tuple(f"{PLANAR_CONTACT_SURFACE.name}.{field}" for field in MOTION)
         move = Transfer(
             mesh,
             particles,
-            reads=(*surface, f"{OPEN_FACES.name}.active") if opens else surface,
+            reads=(*surface, f"{OPEN_FACES.name}.active") if ways.opens else surface,
             fills=(
                 *(f"{PLANAR_CONTACT_FACES.name}.{field}" for field in MOTION),
                 f"{CONTACT_ACTIVITY.name}.active",
@@ -131,9 +145,9 @@ class Contact(Link):
             particles,
             mesh,
             reads=(f"{CONTACT_LOAD.name}.force",),
-            fills=(f"{NODE_LOAD.name}.force",),
+            fills=(f"{ways.load}.force",),
         )
-        self.transfers = (move, load) if loaded else (move,)
+        self.transfers = (move, load) if ways.load else (move,)
 
     def demands(self) -> Demands:
         """One step of both sides in every window, the particles first."""
@@ -144,6 +158,11 @@ class Contact(Link):
             judged=False,
             first=(self.particles, self.mesh),
         )
+
+    def requests(self, described: Mapping[str, Fields]) -> dict[str, Fields]:
+        """Which inner faces of the mesh erosion may open."""
+        inner = f"{PLANAR_CONTACT_SURFACE.name}.inner"
+        return {self.mesh: {inner: np.ones(1)}} if self.ways.erodes else {}
 
     def bind(self, described: Mapping[str, Fields]) -> Binding:
         """Hand on what describes the faces, with the coefficients of the link."""
@@ -173,11 +192,11 @@ class Contact(Link):
                 f"{PLANAR_CONTACT_FACES.name}.{field}": outputs[f"{name}.{field}"]
                 for field in MOTION
             }
-            active = outputs[f"{OPEN_FACES.name}.active"] if self.opens else always
+            active = outputs[f"{OPEN_FACES.name}.active"] if self.ways.opens else always
             return moved | {f"{CONTACT_ACTIVITY.name}.active": active}
 
         def load(_: Ends, end: Ends) -> Mapped:
-            return {f"{NODE_LOAD.name}.force": end[self.particles][f"{CONTACT_LOAD.name}.force"]}
+            return {f"{self.ways.load}.force": end[self.particles][f"{CONTACT_LOAD.name}.force"]}
 
         taken = {f"{PLANAR_CONTACT_FACES.name}.{key}": array for key, array in static.items()}
         return Binding({self.particles: taken}, (move, load)[: len(self.transfers)])

@@ -83,6 +83,7 @@ PARAMS = {
     },
 }  # fmt: skip
 FORCED = ("pressed", "bent", "glued")
+TOUCHED = ("struck", "tetrahedra")  # a partner touches what erosion opens
 
 
 class Run(SolverRun):
@@ -91,6 +92,8 @@ class Run(SolverRun):
     def build(self):
         params = TypeAdapter(FePlateParams).validate_json(json.dumps(PARAMS[self.name]))
         structure = FePlate(params, Resources(communicator=COMMUNICATOR))
+        if self.name in TOUCHED:
+            structure.sample({"contact_surface.inner": np.ones(1)})
         nodes, glued = len(structure.surface), self.name == "glued"
         static = {"node_load.added_mass": np.full(nodes, 1e-5)} if glued else {}
         structure.bind(static, frozenset({"node_load", *["node_glue"] * glued}))
@@ -98,6 +101,10 @@ class Run(SolverRun):
 
     def inputs(self):
         """Forces on the nodes of the surface, and of glued particles their mass too."""
+        if self.name in TOUCHED:
+            number = np.arange(self.solver.loaded.size)
+            force = 5.0 * np.sin(np.add.outer(number, np.arange(3.0)) + 0.1 * self.steps)
+            return {"contact_surface_load.force": force}
         if self.name not in FORCED:
             return {}
         number = np.arange(len(self.solver.surface))
