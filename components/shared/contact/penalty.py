@@ -43,8 +43,9 @@ class Numbers:
     impact: float = 0.0  # 1/s2, largest k/m of a particle, as deep as it may come
     spread: float = 0.0  # 1, largest radius of a sphere's contact over the least edge of elements
     deepest: float = 0.0  # 1, largest penetration so far, over the radius of the particle
-    work: float = 0.0  # J, done on the particles by the motion of the faces until the last step
-    lately: float = 0.0  # J, likewise in the last step, once its end is known
+    # J, done on the particles by the motion of the faces until the last step's begin
+    work: float = 0.0
+    second_half: float = 0.0  # J, that the other half of the last step's force added
     # J, that the kinetic energy lacks: velocities have none of the coming step's force yet, and at
     # the present time should have half of it.
     half_kick: float = 0.0
@@ -53,8 +54,12 @@ class Numbers:
 
     @property
     def brought(self) -> float:
-        """Energy [J] in contact and in half kicks, less the work of the faces on the particles."""
-        return self.half_kick + self.energy + self.dissipated - self.work - self.lately
+        """Energy [J] in contact, less the work of the faces on the particles.
+
+        Both are known at the last step's begin; so is the motion but for the second half of its
+        kick (Hairer, Lubich & Wanner, section VI.3).
+        """
+        return self.energy + self.dissipated - self.work - self.second_half
 
 
 class PenaltyContact:
@@ -123,7 +128,6 @@ class PenaltyContact:
     def take(self, fields: Fields) -> None:
         """Take places of nodes at a step's begin, and which faces are active."""
         self.position = np.array(fields.get(POSITION, self.position))
-        self.numbers.lately = -float((self.reaction * (self.position - self.before)).sum())
         active = fields.get(ACTIVE, self.coming)
         if not np.array_equal(active, self.coming):
             self.coming = np.array(active)
@@ -147,12 +151,17 @@ class PenaltyContact:
             self._change_faces(points, surface, last)
             since = 0.0
         near, apart, passed = self._measure(points, moving, since)
+        former, moved = self.reaction, self.position - self.before
         self.reaction, stiffness = np.zeros((nodes, 3)), np.zeros(nodes)
         loads = Loads(self.reaction, stiffness, self.slip, self.held, self.kicked)
         sums = touch(points, surface, near, last, dt, loads)
         self.before, numbers.last = self.position.copy(), dt
-        numbers.work, numbers.lately = numbers.work + numbers.lately, 0.0
+        if last:
+            numbers.work -= 0.5 * float(((former + self.reaction) * moved).sum())
         numbers.energy, numbers.half_kick = sums.energy, sums.half_kick
+        kicked = self.kicked[points.identity[near.row]]
+        more = points.mass[near.row, None] * kicked * kicked  # J, ΔE of a kick less twice half_kick
+        numbers.second_half = sums.half_kick + float(more.sum())
         numbers.dissipated += sums.dissipated
         numbers.points, numbers.nodes = sums.points, sums.nodes
         numbers.impact, numbers.spread = sums.impact, max(numbers.spread, sums.spread)
@@ -264,7 +273,7 @@ class PenaltyContact:
         start = self.save()
         is_same = all(key in state and state[key].shape == start[key].shape for key in start)
         numbers = Numbers(*state[f"{HEAD}numbers"].tolist()) if is_same else self.numbers
-        numbers = replace(numbers, dissipated=0.0, deepest=0.0, work=0.0, lately=0.0, spread=0.0)
+        numbers = replace(numbers, dissipated=0.0, deepest=0.0, work=0.0, spread=0.0)
         history = {key: state[key] for key in start} if is_same else start
         return {**history, f"{HEAD}numbers": np.array(astuple(numbers))}
 
