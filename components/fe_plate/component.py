@@ -233,8 +233,8 @@ class FePlate(Component):
 
     def give(self, wanted: Keys) -> Fields:
         """Copy out the motion of the surface, its faces that have not eroded, and gauges."""
-        position, velocity, mean = self.state.position, self.state.velocity, self.state.mean_velocity
-        motion = {POSITION: position, VELOCITY: velocity, MEAN_VELOCITY: mean}
+        position, mean = self.state.position, self.state.mean_velocity
+        motion = {POSITION: position, VELOCITY: self.state.velocity, MEAN_VELOCITY: mean}
         touched = {TOUCHED_POSITION: position, TOUCHED_VELOCITY: mean}
         nodes = self.opening.nodes if self.opening else self.on_surface
         values: dict[str, Array] = {}
