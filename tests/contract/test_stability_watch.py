@@ -4,6 +4,8 @@ import laboratory
 import pytest
 
 from quintet.coupler.coupling.judgement.stability_watch import FEWEST, LinkWork, StabilityWatch
+from quintet.coupler.coupling.link import Demands
+from quintet.coupler.coupling.links.direct import Direct
 
 LINK = {
     "kind": "direct",
@@ -54,6 +56,13 @@ def test_windows_longer_than_the_step_of_who_pushes_are_to_be_repeated_and_short
     (text,) = instabilities(swing(tmp_path, 2.0, "serial", 0.02, step=0.006))
     assert text.endswith('; set scheme = "iterated", and shorten window from 0.02 s to 0.003 s.')
     assert instabilities(swing(tmp_path, 2.0, "iterated", 0.003, step=0.006)) == []
+
+
+def test_a_link_that_cannot_be_iterated_is_to_have_shorter_windows(tmp_path, monkeypatch):
+    demands = Demands(schemes=("serial", "parallel"), reason="it is a test")
+    monkeypatch.setattr(Direct, "demands", lambda link: demands)
+    (text,) = instabilities(swing(tmp_path, 2.0, "serial"))
+    assert text.endswith("; shorten window from 0.01 s to 0.005 s.")
 
 
 def test_what_was_seen_outlives_a_snapshot(tmp_path):

@@ -194,13 +194,13 @@ def advice(coupling: Coupling, link: str) -> str:
     inner = coupling.carries(link) or coupling
     key = f"groups.{inner.plan.name}." if inner.plan.name else ""
     pairs = zip(coupling.exchange.links, coupling.exchange.works_of, strict=True)
-    works = next(works for other, works in pairs if other.name == link)
+    demands, works = next((other.demands(), works) for other, works in pairs if other.name == link)
     step = min((inner.components[name].stable for name in works), default=math.inf)
     window = inner.last_dt
     shorter = 0.5 * min(window, step)
     digits = 10.0 ** (math.floor(math.log10(shorter)) - 1)
     short = f"{math.floor(shorter / digits) * digits:g}"
-    if inner.plan.scheme == "iterated":
+    if inner.plan.scheme == "iterated" or "iterated" not in demands.schemes:
         return f"shorten {key}window from {window:.3g} s to {short} s."
     repeated = f'set {key}scheme = "iterated"'
     if window <= step:
