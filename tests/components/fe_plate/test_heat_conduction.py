@@ -245,10 +245,10 @@ def test_what_cannot_be_built_is_refused(keys, words):
 @pytest.mark.parametrize(
     ("make", "words"),
     [
-        (lambda: FixedTemperature(temperature=1.0), "found 0 of these"),
+        (lambda: FixedTemperature(temperature=1.0), "found none of these. Give one"),
         (
             lambda: FixedTemperature(point=(0, 0, 0), node_set="a", temperature=1.0),
-            "found 2 of these",
+            "found point and node_set. Give one",
         ),
         (lambda: FeHeatParams(parts=()), "at least one"),
         (

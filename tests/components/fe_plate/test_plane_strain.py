@@ -129,6 +129,6 @@ def test_cylinders_and_meshes_of_files_are_refused(tmp_path):
         material="steel",
     )
     meshed = Part(shape="mesh", file=str(file), material="steel")
-    for part, kind in ((round_bar, "cylinder"), (meshed, "mesh of 8-node solids")):
-        with pytest.raises(ValueError, match=f"it must be a box, .* found a {kind}, which has"):
+    for part, kind in ((round_bar, "cylinder"), (meshed, "mesh")):
+        with pytest.raises(ValueError, match=f"it must be a box, .* found a {kind}"):
             FePlateParams(parts=(part,), dimensions=2)

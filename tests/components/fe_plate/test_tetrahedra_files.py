@@ -110,7 +110,9 @@ def test_nodes_out_of_order_are_refused(tmp_path):
 
 def test_elements_inside_out_collapsed_or_too_curved_are_refused(tmp_path):
     turned = PLACES * np.array([1.0, 1.0, -1.0])
-    with pytest.raises(SceneError, match=r"Jacobian above 0 at its corners; found -3.*Turn their"):
+    with pytest.raises(
+        SceneError, match=r"Jacobian above 0 at its corners; found -3.*Reverse the order"
+    ):
         Part(
             shape="mesh", file=write_file(tmp_path, "a.inp", abaqus(turned)), material=ELASTIC
         ).placed()

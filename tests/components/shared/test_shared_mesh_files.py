@@ -39,7 +39,7 @@ def test_a_shell_that_is_inside_out_beside_another_is_refused(tmp_path):
 
 
 def test_a_shell_within_another_that_is_no_cavity_is_refused(tmp_path):
-    with pytest.raises(ValueError, match="those of cavities into the cavity"):
+    with pytest.raises(ValueError, match="those of a cavity's into the cavity"):
         read(save_mesh(tmp_path, cube(2.0), cube()), 1.0)
 
 
