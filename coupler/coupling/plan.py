@@ -111,9 +111,9 @@ def _carried_twice(plan: CouplingPlan, exchange: Exchange) -> Iterator[str]:
     carriers: dict[tuple[str, str, str, str], str] = {}
     for number in plan.transfers(exchange):
         transfer, link = exchange.transfers[number], exchange.links[exchange.link_of[number]].name
-        own = {port.name for port in exchange.ports[transfer.giver][1] if port.items == "own"}
+        own_ports = {port.name for port in exchange.ports[transfer.giver][1] if port.items == "own"}
         for read, filled in exchange.sums[number]:
-            if read.partition(".")[0] not in own:
+            if read.partition(".")[0] not in own_ports:
                 continue  # each link has rows of its own
             place = transfer.giver, read, transfer.taker, filled
             if place in carriers:

@@ -18,7 +18,7 @@ from quintet.components.meshless_gas.params import MeshlessGasParams
 from quintet.components.meshless_gas.parts import FixedNodes, WallFriction
 from quintet.components.meshless_gas.ports import SHOWS
 from quintet.components.meshless_gas.ranks.one import OneRank
-from quintet.components.shared.opencl.component import DeviceComponent
+from quintet.components.shared.opencl.device_component import DeviceComponent
 from quintet.components.shared.opencl.devices import device_of, require_doubles
 from quintet.components.shared.opencl.limits import refuse_parts
 from quintet.interfaces.component import Fields, Resources

@@ -17,7 +17,7 @@ from functools import partial
 
 import numpy as np
 
-from quintet.components.shared.opencl.component import DeviceComponent
+from quintet.components.shared.opencl.device_component import DeviceComponent
 from quintet.components.shared.opencl.devices import require_doubles
 from quintet.components.shared.opencl.limits import refuse_parts
 from quintet.components.shared.opencl.ranks import device_and_queue

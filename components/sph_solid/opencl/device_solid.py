@@ -7,7 +7,7 @@ extremes, 24 kB, and the forces on glued particles.
 
 from dataclasses import replace
 
-from quintet.components.shared.opencl.component import DeviceComponent
+from quintet.components.shared.opencl.device_component import DeviceComponent
 from quintet.components.shared.opencl.devices import device_of, require_doubles
 from quintet.components.shared.opencl.limits import refuse_parts
 from quintet.components.sph_solid import MANIFEST

@@ -216,7 +216,7 @@ def test_a_note_says_that_absorption_of_short_waves_is_poor(period, expected):
     waves = REGULAR | {"absorption": True, "period": period}
     notes = [n for n in fluid_params(**settings(waves)).notes if "absorption" in n]
     assert len(notes) == expected
-    assert all("kh above 1.5, as here 1.75," in note for note in notes)
+    assert all("above 1.5, here 1.75, the paddle reflects 17 %" in note for note in notes)
 
 
 NARROW = {"boundary__walls": ((-0.02, 0.0, 0.0), (0.8, 1.0, 0.4))}
