@@ -155,7 +155,7 @@ def test_a_wanted_error_is_delivered_by_the_cheapest_or_by_an_extrapolated_setti
 
     status, report = command_json("study", path, "--error", 1e-5, "--keep")
     assert status == 1 and "ran" not in report["wanted"]
-    assert "EXTRAPOLATED from 0.00390625 (time step), not measured" in capsys.readouterr().out
+    assert "EXTRAPOLATED from 0.00390625 (time step), not run" in capsys.readouterr().out
     status, report = command_json("study", path, "--error", 1e-5, "--keep", "--run")
     assert status == 0 and report["wanted"]["ran"]["relative"]["end"] <= 1e-5
     step = report["wanted"]["extrapolated"]["settings"]["components.spring.step"]
