@@ -98,9 +98,8 @@ class OpeningSurface:
         # Nothing covers outer faces: a 0 stands behind all elements.
         outer = np.full(len(whole.coupled), len(element))
         self._front = np.concatenate([outer, np.searchsorted(element, inner.front)])
-        self._left = np.zeros(
-            0
-        )  # (e,) whether each element was left when faces were last looked at
+        # (e,) whether each element was left when faces were last looked at.
+        self._left = np.zeros(0)
         self._open = np.zeros(0)  # (m,) which faces were open then
 
     def open_faces(self, state: State) -> Array:
