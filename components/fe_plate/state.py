@@ -185,7 +185,7 @@ def at_points(blocks: Array, row: int, point: Whole) -> Array:
 
 
 def first_rows(array: Array, count: int) -> Array:
-    """First rows (count, ...) of an array; those that it lacks are 0."""
+    """First rows (count, ...) of an array; rows beyond its end are 0."""
     rows = np.zeros((count, *array.shape[1:]))
     rows[: len(array)] = array[:count]
     return rows

@@ -133,7 +133,7 @@ def check_outputs(fields: Fields, wanted: Iterable[str], gives: Mapping[str, Fie
 
 
 class AnswerSums:
-    """Sums of which the answers of a component tell: of the fields that it takes and gives.
+    """Lengths of the sums in the answers of a component, of the fields that it takes and gives.
 
     Parameters
     ----------

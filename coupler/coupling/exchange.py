@@ -110,7 +110,7 @@ class Exchange:
         """Samples of a component's rigid bodies, each with its request: what a replay answers.
 
         Those of a mesh follow from its nodes and faces. Nodes and faces that a mesh listed on
-        request stand in the place of those that it described.
+        request replace those that it described.
         """
         answers = [(request, answer) for owner, request, answer in self.samples if owner == name]
         listed = [answer for _, answer in answers if any(key.endswith(".start") for key in answer)]

@@ -60,7 +60,7 @@ class ChildRun:
             discard_former(folder)  # the scene and all its variants were checked
         target, head = ["--out", str(folder), "--force"], ""
         if self.hashed:
-            with contextlib.suppress(SceneError):  # the run itself says what is wrong
+            with contextlib.suppress(SceneError):  # the run reports it
                 head = f"{HASH}{run_hash(self._load(settings))}\n"
         return self._start(self._command(settings, target), folder, "wb", seconds, head)
 

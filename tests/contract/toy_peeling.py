@@ -13,7 +13,7 @@ class Peeling(FePlate):
 
     @parameters
     class Params(FePlateParams):
-        """Of the plate, and what is peeled off it."""
+        """Parameters of the plate; which elements erode, and when."""
 
         above: Number = 0.0  # m, along z
         peeled: NotNegative = 0.0  # s

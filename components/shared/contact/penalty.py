@@ -169,7 +169,7 @@ class PenaltyContact:
         numbers.limit = min(sums.limit, apart)
 
     def _change_faces(self, points: Points, surface: Surface, dt: float) -> None:
-        """Take the faces that are active now; springs on those that eroded lose their energy.
+        """Take the faces that are active now, and dissipate the springs on faces that eroded.
 
         What the particles press on lies further away than what has eroded: no spring gains.
         """

@@ -84,8 +84,8 @@ class GivenRows:
                 self._send(arrays)
             return arrays
         self._finish_broadcast()
-        for other in np.flatnonzero(counts).tolist():
-            self._receive(other, int(counts[other]), arrays)
+        for sender in np.flatnonzero(counts).tolist():
+            self._receive(sender, int(counts[sender]), arrays)
         return [array.copy() for array in arrays] if number == SPARE else arrays
 
     def _chosen_memory(self) -> Array | None:
@@ -125,7 +125,7 @@ class GivenRows:
         ]
 
     def _bytes_of_others(self) -> int:
-        """Bytes of other ranks' rows; also those that are not sent here are between hosts."""
+        """Bytes of the rows of other ranks, which ranks of other hosts would send."""
         return 8 * sum(self._widths) * (self._count - len(self._ids))
 
     def _send(self, arrays: Sequence[Array]) -> None:

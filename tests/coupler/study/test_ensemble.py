@@ -7,7 +7,7 @@ from collections import Counter
 
 import numpy as np
 import pytest
-from spring_scene import command, command_json, write
+from spring_scene import CURVE, command, command_json, write
 
 import quintet
 from quintet.coupler.scene.ensemble_table import draw_settings
@@ -27,18 +27,6 @@ normal = [100.0, 4.0]
 keys = ["{MASS}"]
 uniform = [-0.02, 0.02]
 added = true
-"""
-CURVE = """
-[[expect]]
-name = "curve"
-component = "spring"
-field = "motion.position"
-axis = 0
-measure = "rms"
-csv = "cosine.csv"
-within = 0.05
-unit = "m"
-source = "cos(10 t)"
 """
 
 

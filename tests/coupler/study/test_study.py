@@ -8,7 +8,7 @@ import time
 
 import pytest
 import tomli_w
-from spring_scene import command, command_json, write
+from spring_scene import CURVE, command, command_json, write
 from started import write_scene
 
 from quintet.coupler.run.results import machine
@@ -30,18 +30,6 @@ PLAIN = """
 [[study]]
 label = "as it is"
 settings = {}
-"""
-CURVE = """
-[[expect]]
-name = "curve"
-component = "spring"
-field = "motion.position"
-axis = 0
-measure = "rms"
-csv = "cosine.csv"
-within = 0.05
-unit = "m"
-source = "cos(10 t)"
 """
 STEPS = (1 / 64, 1 / 128, 1 / 256)  # lengths that windows which follow the state can have
 

@@ -29,6 +29,18 @@ within = {within}
 unit = "m"
 source = "cos(10)"
 """
+CURVE = """
+[[expect]]
+name = "curve"
+component = "spring"
+field = "motion.position"
+axis = 0
+measure = "rms"
+csv = "cosine.csv"
+within = 0.05
+unit = "m"
+source = "cos(10 t)"
+"""
 
 
 def write(folder, more="", within=2e-3):

@@ -15,7 +15,8 @@ from quintet.components.shared.domain.given_rows import GivenRows, Giving
 from quintet.interfaces.waited import TRAFFIC
 
 WORLD = MPI.COMM_WORLD
-COUNT, TIMES, KEPT = 1000, 6, (1, 2, 3)  # rows, and times that are given, those that stay in use
+COUNT, TIMES = 1000, 6  # rows, and how often they are given
+KEPT = (1, 2, 3)  # times whose arrays stay in use
 
 
 def rows_of(ids, time):
