@@ -1,6 +1,7 @@
 """All files that a run leaves, and the marker by which its folder is known as a run's."""
 
 import json
+import re
 import secrets
 from collections.abc import Iterable
 from dataclasses import asdict, dataclass
@@ -105,9 +106,21 @@ def _within(folder: Path, names: Iterable[str]) -> list[Path]:
     return [*within, *(path.with_name(path.name + PART) for path in within)]
 
 
+def numbered(folder: Path, kind: str, end: str = "") -> list[Path]:
+    """Snapshots or states of a run, the latest last; copies that a user has named are left out."""
+    name = re.compile(re.escape(kind + end).replace(r"\*", "[0-9]+"))
+    paths = (path for path in folder.glob(kind + end) if name.fullmatch(path.name))
+    return sorted(paths, key=window_of)
+
+
+def window_of(path: Path) -> int:
+    """Windows that were done when a snapshot or a state was made."""
+    return int(path.name.partition("-")[2].partition(".")[0])
+
+
 def _snapshots(folder: Path) -> list[Path]:
     kinds = (SNAPSHOTS, STATES)
-    return [path for kind in kinds for end in ("", PART) for path in folder.glob(kind + end)]
+    return [path for kind in kinds for end in ("", PART) for path in numbered(folder, kind, end)]
 
 
 def leftovers(folder: Path, marker: Marker) -> list[Path]:

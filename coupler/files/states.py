@@ -7,7 +7,7 @@ from typing import Any
 import h5py
 
 from quintet.coupler.files.disk import is_sound
-from quintet.coupler.files.run_files import SNAPSHOTS, STATES
+from quintet.coupler.files.run_files import SNAPSHOTS, STATES, numbered, window_of
 from quintet.coupler.files.stored_values import read_value
 from quintet.interfaces.errors import SceneError
 
@@ -21,12 +21,8 @@ HOW = (
 
 def states_of(folder: Path) -> list[Path]:
     """States of a run that are as they were written, by the windows that were done, latest last."""
-    paths = [path for kind in (STATES, SNAPSHOTS) for path in folder.glob(kind)]
-    return sorted((path for path in paths if is_sound(path)), key=_windows)
-
-
-def _windows(path: Path) -> int:
-    return int(path.stem.rpartition("-")[2])
+    paths = [path for kind in (STATES, SNAPSHOTS) for path in numbered(folder, kind)]
+    return sorted((path for path in paths if is_sound(path)), key=window_of)
 
 
 def time_of(path: Path) -> float:

@@ -31,7 +31,7 @@ from quintet.coupler.files.disk import (
     seal,
 )
 from quintet.coupler.files.hdf5 import create
-from quintet.coupler.files.run_files import LEDGER, SNAPSHOTS, state_file
+from quintet.coupler.files.run_files import LEDGER, SNAPSHOTS, numbered, state_file, window_of
 from quintet.coupler.files.stored_values import read_value, write_value
 from quintet.coupler.scene.read import load, parse
 from quintet.coupler.scene.scene import Scene
@@ -49,12 +49,7 @@ FREE = ("transport", "endpoint", "tls", "minutes", "patience", "restarts")
 
 def snapshots(folder: Path) -> list[Path]:
     """Snapshots of a run, the latest last."""
-    return sorted(folder.glob(SNAPSHOTS), key=window_of)
-
-
-def window_of(path: Path) -> int:
-    """Windows that were done when a snapshot was made."""
-    return int(path.stem.rpartition("-")[2])
+    return numbered(folder, SNAPSHOTS)
 
 
 def remove(paths: Iterable[Path]) -> None:

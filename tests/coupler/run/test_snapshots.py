@@ -14,6 +14,7 @@ from started import Started, same, write_scene
 from quintet.coupler.cli import main
 from quintet.coupler.files import vtkhdf_reader
 from quintet.coupler.files.disk import seal
+from quintet.coupler.files.states import states_of
 from quintet.coupler.run import output, snapshots
 from quintet.coupler.run.simulate import make_folder, simulate
 from quintet.coupler.scene.read import load
@@ -227,3 +228,15 @@ def test_a_file_that_is_too_short_for_the_snapshot_is_refused(tmp_path, run_fold
     os.truncate(copy / "ledger.csv", 10)
     assert status("run", "--resume", copy) == 2
     assert "bytes to go on; found 10. Run the scene again." in capsys.readouterr().err
+
+
+def test_copies_that_a_user_has_named_stay(tmp_path):
+    path, folder = write_scene(tmp_path, end=0.1), tmp_path / "out"
+    arguments = ("run", path, "--set", "output.snapshots=0.03", "--out", folder)
+    assert status(*arguments) == 0
+    copies = [folder / f"snapshot-{name}.h5" for name in ("before-the-crash", "kept-7", "30.old")]
+    for copy in copies:
+        copy.write_text("mine")
+    assert status(*arguments, "--force") == 0
+    assert [copy.read_text() for copy in copies] == ["mine"] * 3
+    assert not snapshots.snapshots(folder) and not states_of(folder)
