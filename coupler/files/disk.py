@@ -125,8 +125,12 @@ def reserve(folder: Path, results: str) -> None:
 
 
 def give_up_reserve(folder: Path) -> None:
-    """Make the room free that was laid aside, but for that of the results."""
-    (folder / RESERVE).unlink(missing_ok=True)
+    """Make the room free that was laid aside, but for that of the results.
+
+    A disk that may only be read by now keeps it; a run must end in order there too.
+    """
+    with contextlib.suppress(OSError):
+        (folder / RESERVE).unlink()
 
 
 def write_at_last(path: Path, content: str) -> Path:
@@ -144,8 +148,11 @@ def write_at_last(path: Path, content: str) -> Path:
             put_in_place(part, path)
     except OSError as cause:
         error = disk_error(path, cause)
-        elsewhere = Path(tempfile.mkdtemp(prefix="quintet-")) / path.name
-        elsewhere.write_text(content)
+        try:
+            elsewhere = Path(tempfile.mkdtemp(prefix="quintet-")) / path.name
+            elsewhere.write_text(content)
+        except OSError:
+            raise error from cause
         print(f"quintet: {error} It is kept as {elsewhere}.", file=sys.stderr, flush=True)
         return elsewhere
     return path

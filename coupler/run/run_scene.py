@@ -4,7 +4,7 @@ import os
 from pathlib import Path
 
 from quintet.coupler.files.disk import reserve
-from quintet.coupler.files.run_files import RESULTS
+from quintet.coupler.files.run_files import RECORDING, RESULTS
 from quintet.coupler.launch.mpi_job import find_launcher, run_under_mpi
 from quintet.coupler.run import results
 from quintet.coupler.run.folder import begin, files_of, go_on
@@ -49,7 +49,8 @@ def run_scene(
             print(headline(scene, place.path), flush=True)
             status = _run(scene, place.path, None, own_process, rank)
         except QuintetError:
-            place.undo()
+            if not (place.path / RECORDING).exists():  # else it began, and what it wrote stays
+                place.undo()
             raise
         if status == results.BAD and place.replaces:
             place.undo()

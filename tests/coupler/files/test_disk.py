@@ -2,6 +2,7 @@
 
 import errno
 import os
+from pathlib import Path
 
 import pytest
 
@@ -46,6 +47,20 @@ def test_what_must_be_kept_goes_elsewhere_where_there_is_no_room(tmp_path, monke
     path = write_at_last(tmp_path / "results.json", "{}")
     assert path.read_text() == "{}" and not list(tmp_path.iterdir())
     assert f"It is kept as {path}." in capsys.readouterr().err
+
+
+def test_results_go_elsewhere_where_a_disk_may_only_be_read(tmp_path, monkeypatch, capsys):
+    def read_only(self, *_, **__):
+        raise OSError(errno.EROFS, os.strerror(errno.EROFS), str(self))
+
+    monkeypatch.setattr(Path, "unlink", read_only)
+    monkeypatch.setattr(Path, "replace", read_only)
+    path = write_at_last(tmp_path / "results.json", "{}")
+    assert path.read_text() == "{}" and path.parent != tmp_path
+    assert "may only be read" in capsys.readouterr().err
+    monkeypatch.setattr(Path, "write_text", read_only)
+    with pytest.raises(DiskError, match=r"results\.json: it cannot be written, .* may only be read"):
+        write_at_last(tmp_path / "results.json", "{}")
 
 
 def test_a_table_has_whole_rows_only(tmp_path, monkeypatch):

@@ -10,9 +10,10 @@ from started import Started, write_scene
 
 import quintet
 from quintet.coupler.cli import main
-from quintet.coupler.files.run_files import LOCK, MARKER, read_marker
+from quintet.coupler.files.run_files import LOCK, MARKER, RECORDING, read_marker
+from quintet.coupler.run import results
 from quintet.coupler.run.folder import FORMER
-from quintet.interfaces.errors import SceneError
+from quintet.interfaces.errors import DiskError, SceneError
 
 OVER = [pytest.param("zenoh", marks=pytest.mark.zenoh), pytest.param("mpi", marks=pytest.mark.mpi)]
 STUDY = (
@@ -227,3 +228,13 @@ def test_a_marker_cannot_name_files_outside_its_folder(scene, tmp_path):
     (tmp_path / "out" / MARKER).write_text(json.dumps(marker))
     assert status("run", scene, "--out", "out", "--force") == 0
     assert scene.read_text().startswith("# mine")
+
+
+def test_a_run_whose_results_cannot_be_written_leaves_its_recording(scene, monkeypatch, capsys):
+    def fail(*_):
+        raise DiskError("results.json: it cannot be written.")
+
+    monkeypatch.setattr(results, "write", fail)
+    assert status("run", scene, "--out", "kept") == 2
+    assert "results.json: it cannot be written." in capsys.readouterr().err
+    assert (scene.parent / "kept" / RECORDING).stat().st_size > 0
