@@ -24,6 +24,7 @@ from typing import IO, NamedTuple
 import psutil
 
 from quintet.coupler.launch.companion import Companion, once_gone
+from quintet.coupler.launch.process_probe import signal_text
 from quintet.coupler.launch.processes import PYTHON, end_marked, environment, marked, tail
 from quintet.coupler.launch.signal_handler import handled_by
 from quintet.coupler.scene.scene import Scene
@@ -168,7 +169,7 @@ def run_under_mpi(arguments: list[str], scene: Scene, folder: Path) -> JobEnd:
     if signals:
         return JobEnd(130, "interrupted before all components had joined")
     if number := int(str(_read(job_file).get("killed", 0))):
-        reason = f"the coupler was killed by signal {number} ({signal.Signals(number).name})"
+        reason = f"the coupler was killed by {signal_text(number)}"
     print(f"quintet: {reason}", file=sys.stderr)
     print("\n".join(f"    {line}" for line in tail(log)), file=sys.stderr)
     return JobEnd(3, reason)

@@ -34,6 +34,14 @@ def killed_for_memory() -> int:
     return 0
 
 
+def signal_text(number: int) -> str:
+    """Number of a signal, and its name: most of those for programs' own use have none."""
+    try:
+        return f"signal {number} ({signal.Signals(number).name})"
+    except ValueError:
+        return f"signal {number}"
+
+
 @dataclass(slots=True)
 class ProcessProbe:
     """Reads what a process of this host does; of one elsewhere nothing is known.
@@ -96,9 +104,8 @@ class ProcessProbe:
         if code is None:
             return f"{who} is gone: it ended or was killed"
         if code < 0:
-            name = signal.Signals(-code).name
             reason = self._reason(-code) if self.pid else ""
-            return f"{who} was killed by signal {-code} ({name}){reason}"
+            return f"{who} was killed by {signal_text(-code)}{reason}"
         return f"{who} ended by itself with status {code}, before it was told to"
 
     def ended_at(self) -> float:

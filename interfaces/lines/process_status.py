@@ -6,7 +6,7 @@ from pathlib import Path
 def running(pid: int) -> bool:
     """Whether a process of this host runs; a zombie does not."""
     try:
-        text = Path(f"/proc/{pid}/stat").read_text()
+        text = Path(f"/proc/{pid}/stat").read_bytes()  # names end after 15 bytes, within a letter
     except OSError:
         return False
-    return text.rpartition(")")[2].split()[0] not in ("Z", "X")
+    return text.rpartition(b")")[2].split()[0] not in (b"Z", b"X")

@@ -5,13 +5,14 @@ import signal
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 import psutil
 import pytest
 from started import write_scene
 
 from quintet.coupler.launch import mpi_job
-from quintet.coupler.launch.process_probe import ProcessProbe
+from quintet.coupler.launch.process_probe import ProcessProbe, signal_text
 from quintet.coupler.launch.processes import end_marked, environment, marked, tail
 from quintet.coupler.scene.read import load
 from quintet.interfaces.errors import SceneError
@@ -240,3 +241,23 @@ def test_a_missing_launcher_is_said(tmp_path, monkeypatch):
     scene = load(str(write_scene(tmp_path)))
     with pytest.raises(SceneError, match=r"needs an mpiexec; there is none on PATH\. Install"):
         mpi_job.command([], scene, tmp_path)
+
+
+def test_a_process_whose_name_ends_within_a_letter_runs(tmp_path):
+    """The system keeps 15 bytes of a name, the last of which may be half of a letter."""
+    program = tmp_path / f"{14 * 'a'}ö"
+    program.write_text("#!/bin/sh\nsleep 60\n")
+    program.chmod(0o700)
+    mark = {"QUINTET_TEST": str(tmp_path)}
+    with subprocess.Popen([program], env={**os.environ, **mark}) as process:
+        while not Path(f"/proc/{process.pid}/stat").read_bytes().count(b"aaa"):
+            time.sleep(0.01)
+        assert running(process.pid)
+        end_marked(*mark.popitem())
+        assert process.wait() == -signal.SIGKILL and not running(process.pid)
+
+
+def test_a_signal_without_a_name_is_told_by_its_number(watched):
+    watch = watched("import os; os.kill(os.getpid(), 40)")
+    assert ending_within(watch, 30.0).endswith(f"process {watch.pid} was killed by signal 40")
+    assert "(SIGKILL)" in signal_text(9)
