@@ -59,7 +59,9 @@ def test_results_go_elsewhere_where_a_disk_may_only_be_read(tmp_path, monkeypatc
     assert path.read_text() == "{}" and path.parent != tmp_path
     assert "may only be read" in capsys.readouterr().err
     monkeypatch.setattr(Path, "write_text", read_only)
-    with pytest.raises(DiskError, match=r"results\.json: it cannot be written, .* may only be read"):
+    with pytest.raises(
+        DiskError, match=r"results\.json: it cannot be written, .* may only be read"
+    ):
         write_at_last(tmp_path / "results.json", "{}")
 
 
