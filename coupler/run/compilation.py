@@ -5,6 +5,7 @@ A scene is built and steps through one window in this process; nothing is writte
 
 import argparse
 import subprocess
+import sys
 import tempfile
 import time
 from collections.abc import Mapping
@@ -17,6 +18,7 @@ from quintet.coupler.coupling.ledger import Ledger
 from quintet.coupler.coupling.schedule import Coupling
 from quintet.coupler.coupling.windows import Windows
 from quintet.coupler.launch.connect import connect
+from quintet.coupler.launch.process_probe import signal_text
 from quintet.coupler.launch.processes import PYTHON
 from quintet.coupler.launch.watchdog import Watchdog
 from quintet.coupler.run.beginning import Start
@@ -94,7 +96,11 @@ def run_compile(options: argparse.Namespace) -> int:
     status = 0
     for name in scenes_of(options.names):
         command = [*PYTHON, "-m", "quintet.coupler.cli", "compile", name]
-        status = max(status, subprocess.run(command, stdin=subprocess.DEVNULL).returncode)
+        code = subprocess.run(command, stdin=subprocess.DEVNULL).returncode
+        if code < 0:
+            print(f"quintet: compile {name} was killed by {signal_text(-code)}", file=sys.stderr)
+            code = 128 - code  # as a shell counts
+        status = max(status, code)
     return status
 
 

@@ -8,6 +8,7 @@ import pytest
 from spring_scene import write
 
 from quintet.coupler.cli import main
+from quintet.coupler.run import compilation
 from quintet.coupler.run.compilation import scenes_of
 from quintet.interfaces.errors import SceneError
 
@@ -47,3 +48,12 @@ def test_a_scene_file_is_compiled_too(tmp_path, capsys):
     with pytest.raises(SystemExit) as exit_info:
         main(["compile", str(write(tmp_path))])
     assert exit_info.value.code == 0 and "spring" in capsys.readouterr().out
+
+
+def test_a_scene_whose_compilation_is_killed_is_not_compiled(monkeypatch, capsys):
+    program = [sys.executable, "-c", "import os, signal; os.kill(os.getpid(), signal.SIGKILL)"]
+    monkeypatch.setattr(compilation, "PYTHON", program)
+    with pytest.raises(SystemExit) as exit_info:
+        main(["compile", "two_springs", "heated_slab"])
+    assert exit_info.value.code == 137
+    assert "compile heated_slab was killed by signal 9 (SIGKILL)" in capsys.readouterr().err
