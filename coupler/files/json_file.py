@@ -41,19 +41,22 @@ class JsonFile:
             )
 
     def write(self, content: Any) -> None:
-        """Write the file whole."""
+        """Write the file whole; where a link leads to it, the link stays."""
         if self.path:
-            write_whole(self.path, json.dumps(content, indent=2))
+            write_whole(self.path.resolve(), json.dumps(content, indent=2))
 
 
 def require_writable(path: Path) -> None:
     """Refuse a file for results that cannot be written, before anything is computed for it."""
-    place = path if path.exists() else path.parent
-    if path.is_dir() or not place.exists() or not os.access(place, os.W_OK):
+    # A file is replaced by a new one, for which its folder must be writable, too.
+    places = [path.resolve().parent, *([path] if path.exists() else [])]
+    if not all(os.access(place, os.W_OK) for place in places):
         raise SceneError(
             f"--json {path}: it must be a file that can be written; there is no such folder, or it "
             "is read-only. Name another."
         )
+    if path.exists() and not path.is_file():  # a pipe or a device would be replaced as well
+        raise SceneError(f"--json {path}: it must be a plain file; it is none. Name another.")
 
 
 def _is_of(path: Path, keys: Collection[str], kind: type | None) -> bool:

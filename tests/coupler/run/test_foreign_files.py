@@ -1,13 +1,16 @@
 """No command changes a byte of a foreign file, and each refuses it in one sentence."""
 
 import json
+import os
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 from started import same, write_scene
 from test_folder import content, status
 
+from quintet.coupler.files.json_file import JsonFile
 from quintet.coupler.files.run_files import MARKER
 
 AT_ONCE = 4
@@ -52,6 +55,29 @@ def test_json_goes_to_no_foreign_file(user_folder, capsys, command, kind):
     assert status(*COMMANDS[command], "--json", kind) == 2
     only_sentence(capsys, f"--json {kind}: it must be new, or what this command left there before")
     assert content(user_folder) == old_content
+
+
+@pytest.mark.parametrize("kind", ["pipe", "folder"])
+def test_json_goes_to_plain_files_only(user_folder, capsys, kind):
+    os.mkfifo("pipe")
+    os.mkdir("folder")
+    assert status(*COMMANDS["conform"], "--json", kind) == 2
+    only_sentence(capsys, f"--json {kind}: it must be a plain file; it is none. Name another.")
+
+
+def test_json_needs_a_folder_that_can_be_written(user_folder, capsys, monkeypatch):
+    """A file in a folder that is read-only cannot be replaced."""
+    (user_folder / "found.json").write_text("")
+    monkeypatch.setattr(os, "access", lambda place, _: Path(place) != user_folder)
+    assert status(*COMMANDS["conform"], "--json", "found.json") == 2
+    only_sentence(capsys, "--json found.json: it must be a file that can be written")
+
+
+def test_a_link_to_a_json_file_stays(user_folder):
+    (user_folder / "link.json").symlink_to("found.json")
+    JsonFile(user_folder / "link.json", ("kind",)).write({"kind": "toys:Toy"})
+    assert (user_folder / "link.json").is_symlink()
+    assert json.loads((user_folder / "found.json").read_text()) == {"kind": "toys:Toy"}
 
 
 def test_json_that_the_same_command_left_is_replaced(user_folder):
