@@ -119,7 +119,7 @@ def _directives(
         f"--nodes={len(used)} --ntasks={len(used)} --ntasks-per-node=1",
         f"--cpus-per-task={max(used.values())}",
         f"--time={job.time} --signal=TERM@{job.margin}",
-        *job.options,
+        *map(shlex.quote, job.options),  # sbatch reads quotes as a shell does
     ]
 
 
@@ -190,7 +190,7 @@ last_snapshot() { ls -v "$out"/snapshot-*.h5 2> /dev/null | tail -n 1; }
 before=$(last_snapshot)
 what=("${begin[@]}")
 if [ "${1-}" = --resume ]; then what=(--resume "$out"); fi
-rm -f "$out"/log/*.exit*
+rm -f "$out"/log/*.exit* "$out/log/mpi.json" # of the job before: how it ended
 hosts=($(scontrol show hostnames "$SLURM_JOB_NODELIST"))
 places=$(mktemp)
 for node in "${nodes[@]}"; do echo "${hosts[node]}"; done > "$places"

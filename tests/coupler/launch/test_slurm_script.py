@@ -1,5 +1,6 @@
 """``quintet launch`` writes a job script that bash can read, and refuses impossible jobs."""
 
+import os
 import subprocess
 
 import pytest
@@ -46,11 +47,29 @@ def test_texts_of_a_scene_cannot_break_out_of_the_script(launch, tmp_path):
     title = 'title="it\'s $(touch broken); `touch broken`"'
     assert launch("two_springs", "--set", title, *SLURM, "-o", "a b.slurm")[0] == 0
     text = _script(tmp_path, "a b.slurm")
+    assert f"#SBATCH '--output={tmp_path}/a b-%j.out'\n" in text
     begin = next(line for line in text.splitlines() if line.startswith("begin="))
     result = subprocess.run(
         ["bash", "-c", begin + '; printf "%s\\n" "${begin[@]}"'], capture_output=True, text=True
     )
     assert title in result.stdout.splitlines() and not (tmp_path / "broken").exists()
+
+
+def test_the_end_of_the_job_before_is_not_taken_for_that_of_this_one(launch, tmp_path):
+    """A step that fails before the coupler begins has written nothing."""
+    assert launch("two_springs", *SLURM)[0] == 0
+    log = tmp_path / "runs/two_springs/log"
+    log.mkdir(parents=True)
+    (log / "mpi.json").write_text('{"status": 130}')
+    programs = {"scontrol": "echo n1", "squeue": "echo RUNNING", "srun": "exit 7"}
+    (tmp_path / "bin").mkdir()
+    for name, text in programs.items():
+        (tmp_path / "bin" / name).write_text(f"#!/bin/sh\n{text}\n")
+        (tmp_path / "bin" / name).chmod(0o700)
+    env = {**os.environ, "PATH": f"{tmp_path}/bin:{os.environ['PATH']}"}
+    command = ["bash", tmp_path / "two_springs.slurm", "--resume"]
+    result = subprocess.run(command, env=env, capture_output=True, text=True)
+    assert result.returncode == 7 and "the run failed with status 7" in result.stdout
 
 
 def test_in_an_image_every_rank_runs_in_it(launch, tmp_path):
