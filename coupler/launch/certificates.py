@@ -14,7 +14,7 @@ from quintet.interfaces.libraries import require
 from quintet.interfaces.lines.endpoint import ENDPOINT
 
 AUTHORITY, COUPLER = "authority", "coupler"
-HOST = re.compile(r"[A-Za-z0-9]([A-Za-z0-9.-]*[A-Za-z0-9])?")
+HOST = re.compile(r"[A-Za-z0-9_]([A-Za-z0-9_.-]*[A-Za-z0-9_])?")
 CLOCKS = datetime.timedelta(hours=1)  # by which clocks of hosts may differ
 LOOPBACK = ("localhost", "127.0.0.1", "::1")
 

@@ -77,6 +77,11 @@ def test_the_host_of_the_endpoint_is_one_of_the_coupler():
     assert "node7" in hosts_of([], ["pong"], "tls/node7:7447")["coupler"]
 
 
+def test_the_name_of_this_host_may_have_an_underscore(monkeypatch):
+    monkeypatch.setattr("socket.gethostname", lambda: "my_node")
+    assert "my_node" in hosts_of([], ["pong"], "")["coupler"]
+
+
 @pytest.mark.parametrize("days", ["0", "3651", "x", "-1"])
 def test_validity_has_bounds(scene, tmp_path, capsys, days):
     assert run(scene, "--out", tmp_path / "tls", f"--days={days}") == 2
