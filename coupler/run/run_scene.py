@@ -38,10 +38,11 @@ def run_scene(
         Whether it is rank 0 of an MPI job that a launcher has started with all its ranks.
     """
     check_machine(scene, rank)  # before a former run is touched
-    if scene.beginning and out and out.resolve() == scene.beginning.folder.resolve():
+    replaced = out or (Path("runs") / scene.file.name if force else None)
+    if scene.beginning and replaced and replaced.resolve() == scene.beginning.folder.resolve():
         raise SceneError(
-            f"--out {out}: it must be another folder than that of begin_from, whose state is read. "
-            "Name another."
+            f"--out {replaced}: it must be another folder than that of begin_from, whose state is "
+            "read. Name another."
         )
     with begin("run", scene.file.name, files_of(scene), out, force) as place:
         try:

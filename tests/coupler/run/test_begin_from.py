@@ -205,3 +205,16 @@ def test_components_of_other_kinds_and_names_are_refused(tmp_path):
     path.write_text("\n".join([f'begin_from = "{first}"', *renamed_text.splitlines()]))
     with pytest.raises(SceneError, match=r"in the run in .* there are ping, pong, here a, b"):
         load(str(path))
+
+
+def test_a_run_does_not_replace_the_one_that_it_begins_from(tmp_path, monkeypatch, capsys):
+    scene = write_scene(tmp_path)
+    monkeypatch.chdir(tmp_path)
+    folder = Path("runs") / load(str(scene)).file.name
+    run(scene, folder, "end=0.01", "output.states=[1.0]")
+    begin = ("--set", f'begin_from="{folder}"', "--force")
+    for out in ((), ("--out", folder)):
+        assert status("run", scene, *begin, *out) == 2
+        words = f"--out {folder}: it must be another folder than that of begin_from"
+        assert words in capsys.readouterr().err
+    assert states_of(folder)
