@@ -26,6 +26,7 @@ from quintet.coupler.files.disk import (
 from quintet.coupler.files.reached import NAME as REACHED
 from quintet.coupler.files.reached import Reached
 from quintet.coupler.files.run_files import LEDGER, RESULTS, SCENE, TRACE, failure_files
+from quintet.coupler.files.states import time_of
 from quintet.coupler.launch.companion import Companion, once_gone
 from quintet.coupler.launch.connect import Connection, connect
 from quintet.coupler.launch.disturbance import UNDISTURBED, Disturbance
@@ -115,12 +116,15 @@ class ActiveRun:
         self.writer = OutputWriter(
             scene, folder, stop, self.logs, self.judgement, first, view_checks
         )
+        if snapshot:
+            self.writer.time = time_of(snapshot)
         self.files: tuple[Closable, ...] = (self.writer, self.ledger, *self.logs.values())
         self.attach_trace: Callable[[Coupling], None] = lambda _: None
         if scene.file.output.trace:
             self._begin_trace()
         self.costs = Costs()
-        self.outcome: dict[str, Any] = {"status": "failed", "windows": 0, "time": 0.0}
+        reached = {"windows": self.writer.done, "time": self.writer.time}
+        self.outcome: dict[str, Any] = {"status": "failed", **reached}
         self.participants: dict[str, Participant] = {}
         self.draws = True  # pictures that were due before a failure; a forked process leaves them
         self._start = StartReport(log_files(scene, folder))
@@ -128,7 +132,7 @@ class ActiveRun:
         self._connection: Connection | None = None
         self._coupling: Coupling | None = None
         self.notes_of_lines: Callable[[], list[str]] = list
-        self._ending = threading.Lock()
+        self._ending = threading.RLock()  # of the thread that ends the run
         self._companion: Closable | None = None
         self._started: OwnProcesses | None = None
 
@@ -278,7 +282,6 @@ class ActiveRun:
     def leave(self) -> None:
         """End from another thread: the main one is in a solver that does not come back."""
         if self._ending.acquire(blocking=False):  # else it has come back
-            self._ending.release()
             status = self.end(self.watchdog.verdict)
             sys.stdout.flush()
             sys.stderr.flush()

@@ -1,5 +1,6 @@
 """A run that goes on from a snapshot ends with the bits of one that was never disturbed."""
 
+import json
 import os
 import shutil
 import signal
@@ -210,6 +211,19 @@ def test_a_snapshot_that_was_changed_is_named_and_the_one_before_is_used(
         f"from {previous.name}.\n"
     ) in capfd.readouterr().err
     assert same(whole, copy) and not snapshots.snapshots(copy)
+
+
+def test_a_run_that_cannot_go_on_has_come_as_far_as_its_snapshot(tmp_path, monkeypatch, capsys):
+    path, out = write_scene(tmp_path, end=0.01), tmp_path / "out"
+    monkeypatch.setattr(output.OutputWriter, "wants_end", lambda writer: writer.done >= 6)
+    assert status("run", path, "--out", out) == 130
+    assert snapshots.window_of(snapshots.latest(out)) == 6
+    (out / "recording.h5").write_bytes(b"")
+    capsys.readouterr()
+    assert status("run", "--resume", out) == 2
+    results = json.loads((out / "results.json").read_text())
+    assert (results["windows"], results["time"]) == (6, pytest.approx(6e-3))
+    assert "are computed again" not in capsys.readouterr().err
 
 
 def test_a_run_whose_snapshots_were_all_changed_is_refused(tmp_path, run_folders, capsys):
