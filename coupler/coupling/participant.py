@@ -193,7 +193,7 @@ class Participant:
             with self.keeping_others_waiting:
                 connect(seconds)
                 return self.line.receive(seconds)
-        except LineError as error:
+        except (LineError, MessageError) as error:
             cause = f"did not join: {error}"
             raise self.verdict() or ComponentFailed(self.name, 0, cause) from error
 

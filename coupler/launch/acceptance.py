@@ -1,5 +1,6 @@
 """Components that say hello to the coupler: who they are, and the processes to be watched."""
 
+import signal
 import socket
 from functools import partial
 from pathlib import Path
@@ -12,6 +13,7 @@ from quintet.coupler.launch.process_probe import ProcessProbe
 from quintet.coupler.launch.ranks_probe import RanksProbe
 from quintet.coupler.scene.scene import Scene
 from quintet.interfaces.lines.message import Message
+from quintet.interfaces.lines.process_status import numbering
 from quintet.interfaces.serving.failing import sendable
 from quintet.interfaces.serving.process import log_of_rank
 
@@ -73,6 +75,8 @@ def identify(
     if not isinstance(others, list) or len(others) != count - 1:
         cause = f"its hello must tell of {count - 1} further ranks; found {others!r:.80}."
         raise ComponentFailed(name, 0, cause)
+    for about in (header, *others):
+        _check_process(name, about)
     log = log_of(folder, name)
     find_process(probe, header, log)
     if probe.host:
@@ -87,11 +91,30 @@ def identify(
         probe.where = probe.calls
 
 
+def _check_process(name: str, about: Any) -> None:
+    """Refuse what names no process: it is watched, sent a signal for its stack, and killed."""
+    about = about if isinstance(about, dict) else {}
+    pid, number, shared = (about.get(key) for key in ("pid", "stack", "shared"))
+    if type(pid) is not int or pid < 1:
+        wrong = f"pid, a whole number above 0; found {pid!r:.80}"
+    elif type(number) is not int or number not in signal.valid_signals():
+        wrong = f"stack, the signal upon which it writes its stack; found {number!r:.80}"
+    elif not isinstance(shared, list):
+        wrong = f"shared, a list of files in shared memory; found {shared!r:.80}"
+    else:
+        return
+    raise ComponentFailed(name, 0, f"its hello must tell of its process: {wrong}. Correct it.")
+
+
 def find_process(probe: ProcessProbe, about: dict[str, Any], log: Path) -> None:
-    """Let a probe watch the process that has told about itself, if it runs on this host."""
-    if about.get("host") == socket.gethostname():
+    """Let a probe watch the process that has told about itself, if it runs on this host.
+
+    In a container of this host its id may be that of another process here.
+    """
+    known = numbering()
+    if about.get("host") == socket.gethostname() and about.get("numbering", known) == known:
         probe.pid = int(about["pid"])
-        paths = map(Path, map(str, about.get("shared", [])))
+        paths = map(Path, map(str, about["shared"]))
         probe.shared = [str(path) for path in paths if path.parent == Path("/dev/shm")]
         probe.where = partial(stack.of_process, probe.pid, int(about["stack"]), log)
 

@@ -197,7 +197,7 @@ class ProcessProbe:
     def kill(self) -> None:
         """Kill the process."""
         if self.pid and self.alive():
-            with contextlib.suppress(ProcessLookupError):
+            with contextlib.suppress(ProcessLookupError, PermissionError):
                 os.kill(self.pid, signal.SIGKILL)
 
     def give_up(self, cause: str) -> None:

@@ -1,5 +1,7 @@
 """Whether a process of this host runs, from /proc: asked a thousand times a second."""
 
+import contextlib
+import os
 from pathlib import Path
 
 
@@ -10,3 +12,10 @@ def running(pid: int) -> bool:
     except OSError:
         return False
     return text.rpartition(b")")[2].split()[0] not in (b"Z", b"X")
+
+
+def numbering() -> str:
+    """Where process ids are those that this process sees: a container may have its own."""
+    with contextlib.suppress(OSError):
+        return os.readlink("/proc/self/ns/pid")
+    return ""

@@ -16,6 +16,7 @@ from quintet.interfaces.component import Component, Resources, make
 from quintet.interfaces.errors import LineError, QuintetError, SceneError
 from quintet.interfaces.libraries import require
 from quintet.interfaces.lines.endpoint import Security, on_loopback
+from quintet.interfaces.lines.process_status import numbering
 from quintet.interfaces.lines.transport import Line
 from quintet.interfaces.manifest import Manifest, find, look_in
 from quintet.interfaces.params import read
@@ -238,6 +239,7 @@ def about_me() -> dict[str, Any]:
     return {
         "pid": os.getpid(),
         "host": os.uname().nodename,
+        "numbering": numbering(),
         "shared": shared_files(),
         "stack": int(STACK_SIGNAL),
     }

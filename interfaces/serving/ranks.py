@@ -190,7 +190,7 @@ class Ranks:
 
     def about_others(self) -> list[dict[str, Any]]:
         """What the coupler needs to watch the ranks other than 0."""
-        keys = ("pid", "host", "shared", "stack")
+        keys = ("pid", "host", "numbering", "shared", "stack")
         return [{key: other[key] for key in keys} for other in self.others]
 
     def lead(self, line: Line) -> LeadingLine:
