@@ -30,13 +30,15 @@ class Companion:
     def __init__(self, act: Callable[[int], object]) -> None:
         parent = os.getpid()
         signal.pthread_sigmask(signal.SIG_BLOCK, ENDING)
-        with warnings.catch_warnings():
-            # Of threads, as those of OpenBLAS: the companion uses none of what they may hold.
-            warnings.simplefilter("ignore", DeprecationWarning)
-            self._pid = os.fork()
-        if not self._pid:
-            _act_and_leave(parent, act)
-        signal.pthread_sigmask(signal.SIG_UNBLOCK, ENDING)
+        try:
+            with warnings.catch_warnings():
+                # Of threads, as those of OpenBLAS: the companion uses none of what they may hold.
+                warnings.simplefilter("ignore", DeprecationWarning)
+                self._pid = os.fork()
+            if not self._pid:
+                _act_and_leave(parent, act)
+        finally:  # also where no process can be started
+            signal.pthread_sigmask(signal.SIG_UNBLOCK, ENDING)
 
     def close(self) -> None:
         """End the companion; a second call does nothing."""

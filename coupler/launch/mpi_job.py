@@ -141,26 +141,28 @@ def run_under_mpi(arguments: list[str], scene: Scene, folder: Path) -> JobEnd:
     line = command(arguments, scene, folder)
     env = {**environment(threads), STARTER: str(os.getpid())}
     log = job_file.with_name(LAUNCHER_LOG)
-    with open(log, "wb") as file:
-        process = subprocess.Popen(
-            line,
-            stdin=subprocess.DEVNULL,
-            stdout=file,
-            stderr=file,
-            start_new_session=True,
-            env=env,
-        )
     with contextlib.ExitStack() as stack:
         output = [
             stack.enter_context(open(job_file.with_name(name), "w+b")) for name in COUPLER_OUTPUT
         ]
         signals = stack.enter_context(_forward_signals(job_file))
-        companion = Companion(once_gone(partial(_see_to_end, job_file, output, starter)))
-        stack.callback(companion.close)
-        reason = _await(process, job_file, output, signals)
-        job = _read(job_file)
-        end_ranks(job, starter)
-        process.wait()
+        with open(log, "wb") as file:
+            process = subprocess.Popen(
+                line,
+                stdin=subprocess.DEVNULL,
+                stdout=file,
+                stderr=file,
+                start_new_session=True,
+                env=env,
+            )
+        try:
+            companion = Companion(once_gone(partial(_see_to_end, job_file, output, starter)))
+            stack.callback(companion.close)
+            reason = _await(process, job_file, output, signals)
+        finally:  # nobody else ends what was started, whatever goes wrong here
+            job = _read(job_file)
+            end_ranks(job, starter)
+            process.wait()
         _forward_output(output)
         for path in exits:
             path.unlink(missing_ok=True)

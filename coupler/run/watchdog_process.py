@@ -185,11 +185,14 @@ class WatchdogProcess:
         sys.stderr.flush()
 
     def _end(self, verdict: ComponentFailed) -> NoReturn:
-        self._write_down(verdict)
-        os.kill(self._run, FAIL)
-        limit = time.monotonic() + ENDED
-        while os.getppid() == self._run and time.monotonic() < limit:
-            time.sleep(0.01)
-        with contextlib.suppress(ProcessLookupError):
-            os.kill(self._run, signal.SIGKILL)
-        os._exit(0)
+        try:
+            self._write_down(verdict)
+        finally:  # it ends, even if it cannot be written down why
+            with contextlib.suppress(ProcessLookupError):
+                os.kill(self._run, FAIL)
+            limit = time.monotonic() + ENDED
+            while os.getppid() == self._run and time.monotonic() < limit:
+                time.sleep(0.01)
+            with contextlib.suppress(ProcessLookupError):
+                os.kill(self._run, signal.SIGKILL)
+            os._exit(0)

@@ -11,9 +11,13 @@ import psutil
 import pytest
 from started import write_scene
 
+from quintet.coupler.coupling.participant import ComponentFailed
 from quintet.coupler.launch import mpi_job
+from quintet.coupler.launch.companion import Companion
 from quintet.coupler.launch.process_probe import ProcessProbe, signal_text
 from quintet.coupler.launch.processes import end_marked, environment, marked, tail
+from quintet.coupler.launch.signal_handler import ENDING
+from quintet.coupler.run.watchdog_process import WatchdogProcess
 from quintet.coupler.scene.read import load
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.lines.process_status import running
@@ -261,3 +265,40 @@ def test_a_signal_without_a_name_is_told_by_its_number(watched):
     watch = watched("import os; os.kill(os.getpid(), 40)")
     assert ending_within(watch, 30.0).endswith(f"process {watch.pid} was killed by signal 40")
     assert "(SIGKILL)" in signal_text(9)
+
+
+def test_an_mpi_job_ends_if_whoever_waits_for_it_fails(tmp_path, monkeypatch):
+    def fail(process, *_):
+        started.append(process)
+        raise OSError("nobody reads its output")
+
+    started = []
+    scene = load(str(write_scene(tmp_path, "mpi")))
+    monkeypatch.setattr(mpi_job, "command", lambda *_: ["sleep", "60"])
+    monkeypatch.setattr(mpi_job, "_await", fail)
+    with pytest.raises(OSError, match="nobody reads"):
+        mpi_job.run_under_mpi([], scene, tmp_path)
+    assert started[0].returncode == -signal.SIGKILL
+
+
+def test_signals_arrive_where_no_companion_can_be_started(monkeypatch):
+    def fail():
+        raise BlockingIOError("no more processes")
+
+    monkeypatch.setattr(os, "fork", fail)
+    with pytest.raises(BlockingIOError):
+        Companion(lambda _: None)
+    assert not signal.pthread_sigmask(signal.SIG_BLOCK, ()) & set(ENDING)
+
+
+def test_a_run_that_cannot_be_written_down_is_ended(watched, monkeypatch):
+    def fail(*_):
+        raise OSError("no room for results")
+
+    run = watched("import signal, time; signal.signal(3, signal.SIG_IGN); time.sleep(60)")
+    process = WatchdogProcess.__new__(WatchdogProcess)
+    process._run, process.report, process._shared = run.pid, fail, [0.0] * 4
+    monkeypatch.setattr(os, "_exit", sys.exit)
+    with pytest.raises(SystemExit):
+        process._end(ComponentFailed("water", 1, "it hangs"))
+    assert "signal 9 (SIGKILL)" in ending_within(run, 10.0) or "signal 3" in run.ending()
