@@ -2,21 +2,17 @@
 
 import functools
 import os
-import sys
 from typing import Any
 
-import numpy as np
 from mpi4py import MPI
 
-from quintet.interfaces.component import Array
 from quintet.interfaces.errors import LineError
+from quintet.interfaces.lines.frame_buffers import FrameBuffers
 from quintet.interfaces.lines.message import Frame
 from quintet.interfaces.lines.process_status import running
 from quintet.interfaces.lines.transport import FramedLine, wait
 
 TAG = 17
-KEPT = 4  # frames kept for the next messages
-UNREFERENCED = 3  # references to a frame in `_buffer` when no field of a message is a view of it
 SENDING = 600.0  # s that a large message may take until the receiver has asked for it
 
 
@@ -49,7 +45,7 @@ class MpiLine(FramedLine):
         self.rank = rank
         self.pid = pid  # of the other side when it runs on this host, else 0
         self._comm = communicator or world()
-        self._frames: list[Array] = []
+        self._buffers = FrameBuffers()
 
     def _put(self, frame: bytearray) -> None:
         try:
@@ -64,7 +60,7 @@ class MpiLine(FramedLine):
             message = self._comm.Improbe(self.rank, TAG, status)
             if message is None:
                 return None
-            frame = self._buffer(status.Get_count(MPI.BYTE))
+            frame = self._buffers.take(status.Get_count(MPI.BYTE))
             request = message.Irecv([frame, MPI.BYTE])
             wait(lambda: request.Test() or None, SENDING, self._reason)
         except MPI.Exception as error:
@@ -75,18 +71,6 @@ class MpiLine(FramedLine):
         """MPI fails where another rank has died: its network layer may notice first."""
         text = " ".join(str(error).split())
         return LineError(f"the connection to {self.other} is broken: {text:.200}")
-
-    def _buffer(self, size: int) -> Array:
-        """Return a frame that is not referenced any more, or a new one.
-
-        New memory costs more than the message: the system clears every page.
-        """
-        for frame in self._frames:
-            if len(frame) == size and sys.getrefcount(frame) == UNREFERENCED:
-                return frame
-        frame = np.empty(size, np.uint8)
-        self._frames = [*self._frames[1 - KEPT :], frame]
-        return frame
 
     def _broken(self) -> str:
         # MPI does not report a dead rank; on the same host the system does.
