@@ -2,6 +2,7 @@
 
 import contextlib
 import threading
+import time
 
 import zenoh
 
@@ -33,8 +34,14 @@ class LineElsewhere(ZenohLine):
         threading.Thread(target=self._put_into, args=(frame, ends), daemon=True).start()
         end = wait(lambda: ends[0] if ends else None, LONGEST, self._reason)
         self._busy = False
+        self._repeat_at = time.monotonic() + self._pause  # the answer is awaited from now on
         if isinstance(end, LineError):
             raise end
+
+    def _repeat(self) -> None:
+        """See `FramedLine._repeat`; a message that is still on its way is not sent again."""
+        if not self._busy:
+            super()._repeat()
 
     def _put_into(self, frame: bytearray, ends: list[LineError | bool]) -> None:
         try:
