@@ -60,6 +60,8 @@ def encode(
         _refuse_no_array(fields)
         raise
     packed = PACKER.pack({**header, **stamp, "arrays": layout.packed})
+    if len(packed) > HEADER_LIMIT:
+        _refuse_header(header, len(packed))
     first = aligned(PREFIX.size + len(packed))
     total = first + layout.size
     if total > limit:
@@ -141,6 +143,14 @@ def _refuse_no_array(fields: Fields) -> None:
                 f"field {key}: it must be an array of numbers; found {type(array).__name__}. "
                 "Correct what gives it."
             )
+
+
+def _refuse_header(header: Mapping[str, Any], size: int) -> None:
+    largest = max(header, key=lambda key: len(PACKER.pack(header[key])), default="arrays")
+    raise MessageError(
+        f"the header of order {header.get('order')} must have at most {HEADER_LIMIT} bytes; this "
+        f"one has {size}, the most of them in {largest}. Shorten it, or give it as a file."
+    )
 
 
 def _refuse_large(layout: Layout, total: int, limit: int) -> None:

@@ -174,3 +174,9 @@ def test_large_numbers_whose_squares_overflow_are_finite():
     require_finite({"f": np.full((3, 3), 1e300), "g": np.full(2, -1e200)}, "")
     require_finite({"f": np.full((3, 3), 3e38, "<f4"), "i": np.arange(3)}, "")
     require_finite({"e": np.zeros((0, 3))}, "")
+
+
+def test_a_header_that_no_receiver_takes_is_not_sent():
+    header = {"order": "go", "threads": 1, "params": {"positions": 200_000 * [0.1]}}
+    with pytest.raises(MessageError, match="header of order go must have .*, the most .* params"):
+        encode(header, {}, None)
