@@ -178,5 +178,5 @@ def test_large_numbers_whose_squares_overflow_are_finite():
 
 def test_a_header_that_no_receiver_takes_is_not_sent():
     header = {"order": "go", "threads": 1, "params": {"positions": 200_000 * [0.1]}}
-    with pytest.raises(MessageError, match="header of order go must have .*, the most .* params"):
+    with pytest.raises(MessageError, match=r"header of order go must have .*, the most .* params"):
         encode(header, {}, None)
