@@ -31,6 +31,7 @@ from quintet.interfaces.lines.transport import REPEAT, WatchedLine
 from quintet.interfaces.lines.zenoh import LEASE, LEASE_BETWEEN_HOSTS, Session, ZenohLine
 
 JOINING_BY_HAND = 3600.0  # s until a component says hello that somebody starts elsewhere
+PORTS_TRIED = 5  # of those that are free when they are looked for, and may be taken meanwhile
 ABORTING = 0.2  # s for components to end by themselves when a run fails
 
 
@@ -51,10 +52,7 @@ class OverZenoh:
             for name in scene.components
         }
         self.several_hosts = bool(scene.elsewhere) and not on_loopback(self.endpoint)
-        try:
-            self.session = self._listen()
-        except LineError as error:
-            raise SceneError(f"scene.{error}. Name another endpoint, or give none.") from error
+        self.session = self._listen_somewhere()
         self.foreign = ForeignMessages(self.session.zenoh, self.session.dropped)
         kinds = {name: plan.manifest.kind for name, plan in scene.components.items()}
         awaited = {name: kind for name, kind in kinds.items() if name in scene.elsewhere}
@@ -74,6 +72,19 @@ class OverZenoh:
         except BaseException:
             self.close(False)
             raise
+
+    def _listen_somewhere(self) -> Session:
+        """Open the session; where no endpoint is given, at another port if one is taken by now."""
+        for number in range(1, 1 + PORTS_TRIED):
+            try:
+                return self._listen()
+            except LineError as error:
+                if self.scene.endpoint or number == PORTS_TRIED:
+                    remedy = "Name another endpoint, or give none."
+                    raise SceneError(f"scene.{error}. {remedy}") from error
+                join_secret.remove(self.endpoint, self.scene.elsewhere)
+                self.endpoint = f"tcp/127.0.0.1:{free_port()}"
+        raise AssertionError
 
     def _listen(self) -> Session:
         """Open the session; over TLS each certificate has the rights of its common name."""
