@@ -3,6 +3,7 @@
 import argparse
 import os
 import sys
+import traceback
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -23,6 +24,7 @@ from quintet.coupler.cli.options import BAD, Action
 from quintet.interfaces.errors import QuintetError, SceneError
 
 LONGEST = 2000  # characters of a sentence
+FAILED = 3  # exit status of a run that failed, and of an error in quintet itself
 INTERRUPTED = 130  # exit status after Ctrl-C
 
 
@@ -52,6 +54,9 @@ def main(arguments: Sequence[str] | None = None) -> None:
     except BrokenPipeError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         status = 0
+    except Exception:  # Python would end with 1, the status of expectations that are not met
+        traceback.print_exc()
+        status = FAILED
     sys.exit(status)
 
 

@@ -142,6 +142,7 @@ def _step(job: Job) -> str:
 status=$?
 # The step's status may be that of a component which srun has killed as the coupler ended.
 said=$(grep -o '"status": [0-9]*' "$out/log/mpi.json" 2> /dev/null | grep -o '[0-9]*$')
+if [ -z "$said" ] && [ $status -le 1 ]; then status=3; fi # the coupler did not end in order
 status=${{said:-$status}}
 rm -f "$places" "$out"/log/*.exit*"""
 

@@ -223,3 +223,12 @@ def test_a_run_over_mutual_tls_gives_the_same_bits(tmp_path, certificates, capsy
     run = Started(path, "--set", f"tls={files}", "--set", f'endpoint="tls/localhost:{free_port()}"')
     assert run.wait() == 0, run.err
     assert status("diff", tmp_path / "memory", run.folder) == 0
+
+
+def test_an_error_of_quintet_itself_is_not_taken_for_an_unmet_expectation(monkeypatch, capsys):
+    def fail(*_):
+        raise ZeroDivisionError("a defect")
+
+    monkeypatch.setattr("quintet.coupler.scene.listing.print_list", fail)
+    assert status("list") == 3
+    assert "ZeroDivisionError: a defect" in capsys.readouterr().err

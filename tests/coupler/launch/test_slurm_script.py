@@ -55,13 +55,16 @@ def test_texts_of_a_scene_cannot_break_out_of_the_script(launch, tmp_path):
     assert title in result.stdout.splitlines() and not (tmp_path / "broken").exists()
 
 
-def test_the_end_of_the_job_before_is_not_taken_for_that_of_this_one(launch, tmp_path):
+@pytest.mark.parametrize(("step", "status"), [(7, 7), (1, 3), (0, 3)])
+def test_the_end_of_the_job_before_is_not_taken_for_that_of_this_one(
+    launch, tmp_path, step, status
+):
     """A step that fails before the coupler begins has written nothing."""
     assert launch("two_springs", *SLURM)[0] == 0
     log = tmp_path / "runs/two_springs/log"
     log.mkdir(parents=True)
     (log / "mpi.json").write_text('{"status": 130}')
-    programs = {"scontrol": "echo n1", "squeue": "echo RUNNING", "srun": "exit 7"}
+    programs = {"scontrol": "echo n1", "squeue": "echo RUNNING", "srun": f"exit {step}"}
     (tmp_path / "bin").mkdir()
     for name, text in programs.items():
         (tmp_path / "bin" / name).write_text(f"#!/bin/sh\n{text}\n")
@@ -69,7 +72,8 @@ def test_the_end_of_the_job_before_is_not_taken_for_that_of_this_one(launch, tmp
     env = {**os.environ, "PATH": f"{tmp_path}/bin:{os.environ['PATH']}"}
     command = ["bash", tmp_path / "two_springs.slurm", "--resume"]
     result = subprocess.run(command, env=env, capture_output=True, text=True)
-    assert result.returncode == 7 and "the run failed with status 7" in result.stdout
+    assert result.returncode == status
+    assert f"the run failed with status {status}; it is not submitted again" in result.stdout
 
 
 def test_in_an_image_every_rank_runs_in_it(launch, tmp_path):
