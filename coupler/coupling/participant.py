@@ -116,7 +116,8 @@ class Participant:
         self.shapes: Shapes | None = None  # of its outputs, once known
         self.sums: AnswerSums | None = None  # of which its answers tell, once its ports are joined
         self.asked = time.perf_counter()  # s, when it got its last order, or was made
-        self._answered = True  # whether the answer to the last order is known
+        self._answered = True  # whether the answer to the last order was received
+        self._looked_at = False  # whether it has arrived, and tells of no failure
         self._kept: dict[int, tuple[int, float]] = {}  # window and stable step, by depth
         self.trial = False  # whether its windows are a trial, undone afterwards
         self.window_order: tuple[dict[str, Any], Fields] = ({}, {})  # the last of a window
@@ -124,7 +125,7 @@ class Participant:
     def send_order(self, order: str, fields: Fields | None = None, **header: Any) -> None:
         """Send an order."""
         self.asked = time.perf_counter()
-        self.order, self._answered = order, False
+        self.order, self._answered, self._looked_at = order, False, False
         if self.trial:
             header["trial"] = True
         header, fields = {"order": order, "window": self.window, **header}, fields or {}
@@ -179,9 +180,9 @@ class Participant:
 
     def has_failed(self) -> bool:
         """Whether the answer that has arrived, but was not yet asked for, tells of a failure."""
-        if self._answered or (frame := self.line.peek()) is None:
+        if self._answered or self._looked_at or (frame := self.line.peek()) is None:
             return False
-        self._answered = True  # not to be looked at again
+        self._looked_at = True
         try:
             return order_of(frame) == "failed"
         except MessageError:  # as whoever receives it will say
