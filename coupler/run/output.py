@@ -11,6 +11,7 @@ from quintet.coupler.coupling.iteration.convergence_log import ConvergenceLog
 from quintet.coupler.coupling.judgement.checks import Judgement
 from quintet.coupler.coupling.schedule import Coupling
 from quintet.coupler.coupling.windows import Windows, in_ticks
+from quintet.coupler.files import vtkhdf_reader
 from quintet.coupler.files.recording import NAME, Instant, Recorder
 from quintet.coupler.files.run_files import view_file, walls_file
 from quintet.coupler.files.vtkhdf import VtkHdf, resume
@@ -46,6 +47,11 @@ def lay_stops(output: OutputSettings, windows: Windows) -> tuple[int, int, int]:
     pictures, states = (marks_of(times, windows) for times in (output.pictures, output.states))
     windows.marks = tuple(dict.fromkeys((*pictures, *states)))
     return views, totals, snapshots
+
+
+def _begins_after(path: Path, time: float) -> bool:
+    """Whether a file has views of later times [s] only, or none yet."""
+    return path.is_file() and not any(when <= time for when in vtkhdf_reader.times(path))
 
 
 def marks_of(times: Iterable[float], windows: Windows) -> tuple[int, ...]:
@@ -141,7 +147,9 @@ class OutputWriter:
             self._recorder = Recorder.resume(self.folder / NAME, self.done + 1)
         for name in self.scene.components:
             path = self.folder / view_file(name)
-            if path.is_file():
+            if name not in self._view_checks and _begins_after(path, self._began):
+                path.unlink()
+            elif path.is_file():
                 self._files[name] = resume(path, self._began, self._view_checks.get(name))
 
     def due(self, ticks: int) -> bool:

@@ -8,7 +8,9 @@ import subprocess
 import sys
 import time
 from pathlib import Path
+from types import SimpleNamespace
 
+import numpy as np
 import pytest
 from started import Started, same, write_scene
 
@@ -16,6 +18,7 @@ from quintet.coupler.cli import main
 from quintet.coupler.files import vtkhdf_reader
 from quintet.coupler.files.disk import seal
 from quintet.coupler.files.states import states_of
+from quintet.coupler.files.vtkhdf import VtkHdf
 from quintet.coupler.run import output, snapshots
 from quintet.coupler.run.simulate import make_folder, simulate
 from quintet.coupler.scene.read import load
@@ -254,3 +257,18 @@ def test_copies_that_a_user_has_named_stay(tmp_path):
     assert status(*arguments, "--force") == 0
     assert [copy.read_text() for copy in copies] == ["mine"] * 3
     assert not snapshots.snapshots(folder) and not states_of(folder)
+
+
+@pytest.mark.parametrize("seen", [(), (2.0, 3.0)])
+def test_views_that_begin_after_a_snapshot_begin_again(tmp_path, seen):
+    path = tmp_path / "ping.vtkhdf"
+    file = VtkHdf(path)
+    for when in seen:
+        file.append(when, {"points": np.zeros((2, 3))})
+    file.close()
+    writer = output.OutputWriter.__new__(output.OutputWriter)
+    settings = SimpleNamespace(output=SimpleNamespace(record=False))
+    writer.scene = SimpleNamespace(components=["ping"], file=settings)
+    writer.folder, writer._began, writer._view_checks, writer._files = tmp_path, 1.0, {}, {}
+    writer._go_on()
+    assert not path.exists() and not writer._files
