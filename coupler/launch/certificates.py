@@ -15,6 +15,7 @@ from quintet.interfaces.lines.endpoint import ENDPOINT
 
 AUTHORITY, COUPLER = "authority", "coupler"
 HOST = re.compile(r"[A-Za-z0-9_]([A-Za-z0-9_.-]*[A-Za-z0-9_])?")
+LONGEST_NAME = 64  # characters of a common name: ub-common-name of RFC 5280
 CLOCKS = datetime.timedelta(hours=1)  # by which clocks of hosts may differ
 LOOPBACK = ("localhost", "127.0.0.1", "::1")
 
@@ -71,17 +72,25 @@ def write_certificates(folder: Path, hosts: Mapping[str, Sequence[str]], days: i
             f"components.{AUTHORITY}: its certificate would be taken for that of the authority. "
             "Name the component otherwise."
         )
+    if long := [name for name in hosts if len(name) > LONGEST_NAME]:
+        raise SceneError(
+            f"components.{long[0]}: the name in a certificate must have at most {LONGEST_NAME} "
+            f"characters; found {len(long[0])}. Name the component otherwise."
+        )
     if present := [str(path) for path in paths if path.exists() or path.is_symlink()]:
         raise SceneError(
             f"certificates replaces no file; {present[0]} is there. Give another folder with --out."
         )
-    authority = _Signer(days)
+    authority, written = _Signer(days), list[Path]()
     try:
         folder.mkdir(mode=0o700, parents=True, exist_ok=True)
-        _write(folder, AUTHORITY, *authority.itself())
+        _write(written, folder, AUTHORITY, *authority.itself())
         for name, listed in hosts.items():
-            _write(folder, name, *authority.certificate(name, listed, serves=name == COUPLER))
+            signed = authority.certificate(name, listed, serves=name == COUPLER)
+            _write(written, folder, name, *signed)
     except OSError as error:
+        for path in written:  # or a second try would find them, and replace nothing
+            path.unlink(missing_ok=True)
         raise SceneError(
             f"--out {folder}: certificates must be written there; they cannot "
             f"({error.strerror or error}). Give another folder."
@@ -180,10 +189,11 @@ def _address(host: str) -> Any:
         return None
 
 
-def _write(folder: Path, name: str, certificate: bytes, key: bytes) -> None:
+def _write(written: list[Path], folder: Path, name: str, certificate: bytes, key: bytes) -> None:
     for end, content in (("pem", certificate), ("key", key)):
-        flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL
-        with open(os.open(folder / f"{name}.{end}", flags, 0o600), "wb") as file:
+        path, flags = folder / f"{name}.{end}", os.O_WRONLY | os.O_CREAT | os.O_EXCL
+        with open(os.open(path, flags, 0o600), "wb") as file:
+            written.append(path)
             file.write(content)
 
 

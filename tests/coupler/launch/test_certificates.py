@@ -1,6 +1,7 @@
 """Certificates of a scene: made once, for the names of its components, readable by one user."""
 
 import datetime
+import os
 import ssl
 
 import pytest
@@ -91,6 +92,25 @@ def test_validity_has_bounds(scene, tmp_path, capsys, days):
 def test_a_component_called_authority_is_refused(tmp_path):
     with pytest.raises(SceneError, match="Name the component otherwise"):
         write_certificates(tmp_path, {"authority": ["localhost"]}, 1)
+
+
+def test_a_component_whose_name_is_too_long_for_a_certificate_is_refused(tmp_path):
+    with pytest.raises(SceneError, match=r"components\.a{65}: .* at most 64 characters; found 65"):
+        write_certificates(tmp_path / "tls", {"coupler": ["localhost"], 65 * "a": ["localhost"]}, 1)
+    assert not (tmp_path / "tls").exists()
+
+
+def test_certificates_that_cannot_all_be_written_leave_none(tmp_path, monkeypatch):
+    def open_some(path, *more):
+        if str(path).endswith("coupler.key"):
+            raise OSError(28, "No space left on device")
+        return system_open(path, *more)
+
+    system_open = os.open
+    monkeypatch.setattr(os, "open", open_some)
+    with pytest.raises(SceneError, match="certificates must be written there; they cannot"):
+        write_certificates(tmp_path, {"coupler": ["localhost"]}, 1)
+    assert not list(tmp_path.iterdir())
 
 
 def test_without_the_library_it_is_named(tmp_path, monkeypatch):
