@@ -123,7 +123,7 @@ class Run:
         return {path.stem: path for path in map(self.folder.joinpath, PICTURES) if path.is_file()}
 
     def __str__(self) -> str:
-        screen = Console(file=io.StringIO(), width=WIDTH)
+        screen = Console(file=io.StringIO(), width=WIDTH, highlight=False, markup=False)
         show.print_results(self.results, screen)
         return screen.file.getvalue()  # type: ignore[attr-defined]
 
@@ -132,7 +132,9 @@ class Run:
 
     def _repr_html_(self) -> str:
         """Summary and pictures, for a notebook."""
-        screen = Console(file=io.StringIO(), width=WIDTH, record=True, highlight=False)
+        screen = Console(
+            file=io.StringIO(), width=WIDTH, record=True, highlight=False, markup=False
+        )
         show.print_results(self.results, screen, box.SIMPLE_HEAD)
         text = screen.export_html(inline_styles=True, code_format="<pre>{code}</pre>")
         images = (base64.b64encode(path.read_bytes()) for path in self.pictures.values())

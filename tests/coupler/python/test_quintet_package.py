@@ -186,6 +186,8 @@ def test_a_notebook_shows_tables_and_pictures(scene):
     assert "expectation" in html and "ping-pong" in html
     assert html.count("data:image/png;base64,") == 1
     assert toy_run._repr_png_() == picture.read_bytes()
+    for text in (html, str(toy_run)):
+        assert all(f"{head} [s]" in text for head in ("build", "compute", "CPU", "wait"))
 
 
 @pytest.mark.parametrize("widgets", [None, "installed"])
