@@ -8,6 +8,7 @@ import sys
 import textwrap
 from collections.abc import Iterator
 from dataclasses import replace
+from pathlib import Path
 
 from quintet.coupler.files.disk import write_whole
 from quintet.coupler.reference.sections import (
@@ -33,25 +34,41 @@ HEADS = ("key", "unit", "type", "default", "meaning")
 def run_describe(options: argparse.Namespace) -> int:
     """Print what a scene, a kind or a link may say, or write it into texts."""
     if options.write:
+        if options.subject or options.json:
+            raise SceneError(
+                "describe --write takes its subjects from the files, and writes Markdown. Remove "
+                "SUBJECT and --json."
+            )
         for path in options.write:
-            write_whole(path, filled(path.read_text(), str(path)))
+            write_whole(path, filled(_text_of(path), str(path)))
         return 0
     if not options.subject:
         rows = list(subjects())
         room = max(len(name) for name, _ in rows)
-        print("\n".join(f"{name:<{room}}  {title}" for name, title in rows))
+        listed = [{"subject": name, "title": title} for name, title in rows]
+        plain = "\n".join(f"{name:<{room}}  {title}" for name, title in rows)
+        print(_json(listed) if options.json else plain)
         return 0
     reference, part = chosen(options.subject)
+    tables = [part_of(reference, part)] if part else reference.sections
     if options.json:
-        print(
-            json.dumps(
-                [as_data(section) for section in reference.sections], indent=2, ensure_ascii=False
-            )
-        )
+        print(_json([as_data(section) for section in tables]))
         return 0
     width = shutil.get_terminal_size().columns if sys.stdout.isatty() else None
-    print("\n".join(lines(reference, width) if not part else part_lines(reference, part, width)))
+    print("\n".join(section_lines(*tables, width) if part else lines(reference, width)))
     return 0
+
+
+def _text_of(path: Path) -> str:
+    """Text of a file into which tables are written."""
+    try:
+        return path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        raise SceneError(f"--write {path}: it cannot be read ({error}). Name another.") from error
+
+
+def _json(content: object) -> str:
+    return json.dumps(content, indent=2, ensure_ascii=False)
 
 
 def chosen(words: list[str]) -> tuple[Reference, str]:
@@ -64,11 +81,11 @@ def chosen(words: list[str]) -> tuple[Reference, str]:
     return reference_of(*words[:count]), "".join(words[count:])
 
 
-def part_lines(reference: Reference, part: str, width: int | None) -> Iterator[str]:
-    """Write one table of a reference, or one key by its path."""
+def part_of(reference: Reference, part: str) -> Section:
+    """One table of a reference, or a table with one key, by its path."""
     tables = {".".join(section.path): section for section in reference.sections}
     if part in tables:
-        return section_lines(tables[part], width)
+        return tables[part]
     rows = {
         ".".join([*section.path, key.name]): replace(section, about="", keys=(key,))
         for section in reference.sections
@@ -77,7 +94,7 @@ def part_lines(reference: Reference, part: str, width: int | None) -> Iterator[s
     if part not in rows:
         known = [*tables, *rows]
         raise SceneError(unknown(f"describe {reference.name}: {part}", part, filter(None, known)))
-    return section_lines(rows[part], width)
+    return rows[part]
 
 
 def lines(reference: Reference, width: int | None) -> Iterator[str]:

@@ -120,6 +120,13 @@ def test_describe_prints_one_key_alone(capsys):
 
 
 def test_describe_gives_data_for_programs(capsys):
+    _, out, _ = describe(capsys, "scene", "output", "--json")
+    (part,) = json.loads(out)
+    assert part["table"] == "[output]"
+    _, out, _ = describe(capsys, "scene", "output.record", "--json")
+    assert [key["key"] for table in json.loads(out) for key in table["keys"]] == ["record"]
+    _, out, _ = describe(capsys, "--json")
+    assert {"subject": "scene", "title": "the keys of a scene file"} in json.loads(out)
     _, out, _ = describe(capsys, "link", "fsi", "--json")
     (table,) = json.loads(out)
     contact = next(entry for entry in table["keys"] if entry["key"] == "contact")
@@ -155,6 +162,9 @@ def test_a_class_is_described(capsys):
         (["link", "fis"], "describe link fis is not known. Did you mean fsi?"),
         (["link"], "describe link needs a kind of link. Name one, as in describe link fsi."),
         (["scene", "ouput"], "describe scene: ouput is not known. Did you mean output?"),
+        (["scene", "ouput", "--json"], "describe scene: ouput is not known. Did you mean output?"),
+        (["--write", "/nowhere/a.md"], "--write /nowhere/a.md: it cannot be read"),
+        (["--json", "--write", "{text}"], "Remove SUBJECT and --json."),
         (["scene", "output", "more"], "one subject at a time; found scene output more."),
         (["nowhere:Mass"], "describe nowhere:Mass: it cannot be imported"),
         (["--write", "{text}"], "there is no place for tables."),
