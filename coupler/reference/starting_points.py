@@ -6,12 +6,14 @@ replaced.
 
 import keyword
 import re
+import shlex
 from dataclasses import dataclass
 from importlib.resources import files
 from importlib.util import find_spec
 from pathlib import Path
 
 from quintet.coupler.coupling.links import known_links
+from quintet.coupler.files.disk import reporting_disk
 from quintet.coupler.scene.read import library
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.manifest import known_kinds
@@ -28,21 +30,21 @@ class Template:
 
     package: str  # whose README.md has them
     name: str  # of the example, replaced by the new one
-    next: tuple[str, ...]  # commands to go on with; {name} and {folder} are filled in
+    next: tuple[str, ...]  # commands to go on with; {name}, {folder}, {scene} are filled in
 
 
 INSTALL = "pip install -e {folder}"
 TEMPLATES = {
-    "scene": Template("quintet.scenarios", "falling_ball", ("quintet run {folder}/scene.toml",)),
+    "scene": Template("quintet.scenarios", "falling_ball", ("quintet run {scene}",)),
     "component": Template(
         "quintet.interfaces",
         "mooring",
-        (INSTALL, "quintet conform {name}", "quintet run {folder}/scene.toml", "pytest {folder}"),
+        (INSTALL, "quintet conform {name}", "quintet run {scene}", "pytest {folder}"),
     ),
     "link": Template(
         "quintet.coupler",
         "mount",
-        (INSTALL, "quintet run {folder}/scene.toml", "pytest {folder}"),
+        (INSTALL, "quintet run {scene}", "pytest {folder}"),
     ),
 }
 
@@ -76,8 +78,9 @@ def write_new(subject: str, name: str, folder: Path) -> list[Path]:
         )
     paths = []
     for path, text in starting_point(subject, name).items():
-        (folder / path).parent.mkdir(parents=True, exist_ok=True)
-        (folder / path).write_text(text, encoding="utf-8")
+        with reporting_disk(folder / path):
+            (folder / path).parent.mkdir(parents=True, exist_ok=True)
+            (folder / path).write_text(text, encoding="utf-8")
         paths.append(folder / path)
     return paths
 
@@ -94,7 +97,9 @@ def starting_point(subject: str, name: str) -> dict[str, str]:
 
 def next_commands(subject: str, name: str, folder: Path) -> list[str]:
     """Commands to go on with."""
-    return [line.format(name=name, folder=folder) for line in TEMPLATES[subject].next]
+    place = shlex.quote(str(folder))
+    scene = shlex.quote(str(folder / "scene.toml"))
+    return [line.format(name=name, folder=place, scene=scene) for line in TEMPLATES[subject].next]
 
 
 def _renamed(text: str, old: str, new: str) -> str:

@@ -37,6 +37,18 @@ def write_start(tmp_path, monkeypatch):
     return begin
 
 
+def test_the_commands_to_go_on_with_are_for_a_shell(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(SystemExit):
+        main(["new", "scene", "first_try", "--out", "my scenes/first"])
+    assert "quintet run 'my scenes/first/scene.toml'" in capsys.readouterr().out
+    (tmp_path / "file").write_text("")
+    with pytest.raises(SystemExit) as exit_info:
+        main(["new", "scene", "first_try", "--out", "file/first"])
+    assert exit_info.value.code == 2
+    assert "it cannot be written (Not a directory)" in capsys.readouterr().err
+
+
 def test_a_new_scene_meets_its_exact_solution(write_start, capsys):
     folder = write_start("scene", "first_try")
     assert "quintet run first_try/scene.toml" in capsys.readouterr().out
