@@ -45,6 +45,11 @@ def export(
     run = Run(folder)
     keys, left_out = chosen(run.fields, wanted)
     place = folder / FOLDER if out is None else out
+    if place.resolve() == run.folder:
+        raise SceneError(
+            f"export: {place} must not be the folder of the run, whose {LEDGER} it would replace. "
+            "Name another by --out."
+        )
     ports = dict.fromkeys(key.rpartition(".")[0] for key in keys)
     files = {port: place / f"{port}.csv" for port in ports}
     ledger = [place / LEDGER] if (folder / LEDGER).is_file() else []

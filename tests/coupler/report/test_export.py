@@ -95,6 +95,13 @@ def test_nothing_is_overwritten_and_unknown_names_are_told(folder, tmp_path, cap
     assert "must be a folder; found a file" in capsys.readouterr().err
 
 
+def test_an_export_does_not_replace_the_ledger_of_the_run(folder, capsys):
+    ledger = (folder / "ledger.csv").read_bytes()
+    assert command("export", folder, "--out", folder, "--force") == 2
+    assert "must not be the folder of the run" in capsys.readouterr().err
+    assert (folder / "ledger.csv").read_bytes() == ledger
+
+
 def test_names_of_columns_say_field_item_axis_and_unit():
     times = np.arange(2.0)
     wide = columns_of("velocity", Series(np.arange(12.0).reshape(2, 2, 3), times, "m/s"))
