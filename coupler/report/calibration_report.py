@@ -4,7 +4,6 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from quintet.coupler.files.disk import reporting_disk
 from quintet.coupler.report.comparison import shortened
 from quintet.coupler.report.panels import can_draw, curve_panels, save
 
@@ -69,5 +68,4 @@ def draw(summary: Summary, out: Path) -> Path | None:
         panel.grid(alpha=0.3)
         below = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.16), "ncols": 3}
         panel.legend(fontsize=8, frameon=False, **below)
-    with reporting_disk(out):
-        return save(figure, out)
+    return save(figure, out)

@@ -37,8 +37,8 @@ def write_chrome_trace(folder: Path, out: Path) -> tuple[Path, bool]:
         "displayTimeUnit": "ms",
         "otherData": {"scene": marker.scene},
     }
-    out.parent.mkdir(parents=True, exist_ok=True)
     with reporting_disk(out):
+        out.parent.mkdir(parents=True, exist_ok=True)
         out.write_text(json.dumps(content, separators=(",", ":")), encoding="utf-8")
     return out, not any(row.what == FULL for row in rows)
 

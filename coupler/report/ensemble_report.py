@@ -8,7 +8,7 @@ from typing import Any
 
 from rich.table import Table
 
-from quintet.coupler.files.disk import reporting_disk, write_whole
+from quintet.coupler.files.disk import write_whole
 from quintet.coupler.measures.ensemble_statistics import Band
 from quintet.coupler.measures.expectation import DISTANCES
 from quintet.coupler.measures.time_series import Curve
@@ -119,8 +119,7 @@ def draw(
         panel.grid(alpha=0.3)
         below = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.14), "ncols": 2}
         panel.legend(fontsize=8, frameon=False, **below)
-    with reporting_disk(out):
-        return save(figure, out)
+    return save(figure, out)
 
 
 def _headline(row: Row) -> str:

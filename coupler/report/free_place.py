@@ -20,6 +20,13 @@ def free_place(
             f"{option} {out}: it must end with one of {', '.join(formats)}; found "
             f"{out.suffix or 'no ending'}. Name another file."
         )
+    above = next(folder for folder in out.parents if folder.exists())
+    if not above.is_dir():
+        raise SceneError(
+            f"{option} {out}: it must lie in a folder; {above} is none. Name another file."
+        )
+    if out.is_dir():
+        raise SceneError(f"{option} {out}: it must be a file; found a folder. Name another file.")
     if out.exists() and not force:
         raise SceneError(f"{option} {out}: it exists. Name another file, or use --force.")
     return out

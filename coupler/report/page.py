@@ -70,8 +70,8 @@ def write(page: str, folder: Path, out: Path) -> Path:
             f"report of {folder}: it must be smaller than {LARGEST / 1e6:g} MB; found "
             f"{len(content) / 1e6:.1f} MB. Draw fewer pictures."
         )
-    out.parent.mkdir(parents=True, exist_ok=True)
     with reporting_disk(out):
+        out.parent.mkdir(parents=True, exist_ok=True)
         out.write_bytes(content)
     return out
 

@@ -9,6 +9,7 @@ import textwrap
 from pathlib import Path
 from typing import Any
 
+from quintet.coupler.files.disk import reporting_disk
 from quintet.interfaces.libraries import how_to_install, is_installed
 
 WIDEST, TALLEST = 11.0, 8.5  # inches, shape of a page, and width of all panels together
@@ -89,6 +90,8 @@ def _misfit(count: int, columns: int, height: float) -> float:
 
 def save(figure: Any, out: Path) -> Path:
     """Write a figure in the format of the file's ending."""
-    Path(out).parent.mkdir(parents=True, exist_ok=True)
-    figure.savefig(out, dpi=DOTS)
-    return Path(out)
+    out = Path(out)
+    with reporting_disk(out):
+        out.parent.mkdir(parents=True, exist_ok=True)
+        figure.savefig(out, dpi=DOTS)
+    return out

@@ -8,7 +8,7 @@ from typing import Any
 
 from rich.table import Table
 
-from quintet.coupler.files.disk import reporting_disk, write_whole
+from quintet.coupler.files.disk import write_whole
 from quintet.coupler.report.panels import can_draw, curve_panels, save
 from quintet.coupler.report.work_precision import three_digits
 from quintet.coupler.scene.overrides import value_text
@@ -94,8 +94,7 @@ def draw(axes: Sequence[Axis], rows: Sequence[Row], out: Path, title: str = "") 
     figure, panels = curve_panels(len(names), title)
     for panel, name in zip(panels, names, strict=True):
         _draw(panel, name, across, others, [r for r in done if r["values"].get(name) is not None])
-    with reporting_disk(out):
-        return save(figure, out)
+    return save(figure, out)
 
 
 def _numbers(values: Sequence[Any]) -> bool:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from quintet.coupler.coupling.participant import ComponentFailed, Participant
 from quintet.coupler.coupling.schedule import Costs
 from quintet.coupler.files.checksums import of_files, sealed
-from quintet.coupler.files.disk import reporting_disk, write_at_last
+from quintet.coupler.files.disk import write_at_last
 from quintet.coupler.files.recording import Recording
 from quintet.coupler.files.run_files import LEDGER, PICTURES, RESULTS, SCENE
 from quintet.coupler.measures.advice import Load, advice, serial_share, stages
@@ -135,12 +135,11 @@ def draw(scene: Scene, folder: Path, outcomes: list[Outcome]) -> None:
             beyond = f"pictures at t = {', '.join(late)} s lie beyond the run's end"
             instead = f"its last state, at {end:g} s, is drawn in their place"
             print(f"quintet: {beyond}: {instead}", file=sys.stderr, flush=True)
-        with reporting_disk(out):
-            draw_run(folder, out, picture_of(output, output.pictures), title)
+        draw_run(folder, out, picture_of(output, output.pictures), title)
     if outcomes:
         out, values = folder / PICTURES[1], bool(output.pictures)
         profiles = profiles_of(folder)
-        with Recording(folder / "recording.h5") as recording, reporting_disk(out):
+        with Recording(folder / "recording.h5") as recording:
             comparison(
                 scene.folder, scene.expect, outcomes, recording, out, title, values, profiles
             )

@@ -154,9 +154,14 @@ def test_another_file_is_not_replaced_without_force(folder, capsys):
         (["--colour", "sea.pressure"], "component sea is not known. Known here: ball, water."),
         (["--range", "sea=1,2"], "component sea is not known"),
         (["--out", "a.txt"], "it must end with one of .png, .svg, .pdf, .jpg; found .txt"),
+        (["--out", "file/a.png"], "--out file/a.png: it must lie in a folder; file is none"),
+        (["--out", "folder.png", "--force"], "it must be a file; found a folder"),
     ],
 )
-def test_mistakes_are_told(folder, arguments, message, capsys):
+def test_mistakes_are_told(folder, arguments, message, capsys, monkeypatch):
+    monkeypatch.chdir(folder)
+    (folder / "file").write_text("")
+    (folder / "folder.png").mkdir()
     assert _command(folder, *arguments) == 2
     assert message in capsys.readouterr().err
 
