@@ -31,8 +31,9 @@ SERIES = (
 )
 IN_SPACE = "draw the whole run in three dimensions (extra views3d; default: DIR/drawn-3d.png)"
 ANIMATE = "make a film of all steps in three dimensions: .gif or .mp4 (extra views3d)"
+OPTION = {"in_space": "3d"}  # whose name is that of no variable
 FIELDS = "NAME, NAME.PORT or NAME.PORT.FIELD (default: all of at most 1000 numbers)"
-FOLDER = "folder of the files (default: DIR/export)"
+FOLDER = "folder of the files, not DIR itself (default: DIR/export)"
 
 
 def add_commands(command: Command) -> None:
@@ -170,6 +171,7 @@ def _redraw(options: argparse.Namespace, wanted: "Wanted") -> Path:
 
 def _draw_series(options: argparse.Namespace) -> int:
     """Draw recorded fields over time."""
+    _refuse_options_of_places(options)
     # Start-up: only this command needs it.
     from quintet.coupler.files.run_files import SERIES_DRAWN
     from quintet.coupler.report.columns import chosen
@@ -184,6 +186,21 @@ def _draw_series(options: argparse.Namespace) -> int:
     out = draw_series(fields, keys, place, title_of(options.folder))
     print(f"drawn: {os.path.relpath(out)}")
     return 0
+
+
+def _refuse_options_of_places(options: argparse.Namespace) -> None:
+    """Refuse options that choose a time, a place or colours: series have none of them."""
+    absent: dict[str, object] = {
+        "times": [], "colour": [], "range": [], "view": "", "section": None, "region": None,
+        "displacement_scale": None, "in_space": False, "animate": None,
+    }  # fmt: skip
+    names = [name for name, value in absent.items() if getattr(options, name) != value]
+    if names:
+        wrong = ", ".join("--" + OPTION.get(name, name.replace("_", "-")) for name in names)
+        raise SceneError(
+            f"--series draws recorded fields over the whole time of a run, for which {wrong} says "
+            "nothing. Remove it, or --series."
+        )
 
 
 def _box(numbers: list[float] | None) -> "Box | None":

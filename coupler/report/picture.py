@@ -33,6 +33,7 @@ MARGIN, BEYOND = 0.03, 0.12  # of the picture: around all that moves; how far wa
 WITHIN = 0.08  # of an edge: margin at most, as of long tanks
 TALL, LOWEST = 2.0, 0.22  # height over width of a panel: at most; what is lower is stretched
 FLATTEST = 0.05  # height over width of what is shown, at least
+NARROWEST = 20.0  # height over width of a region, at most
 
 
 @dataclass(frozen=True)
@@ -100,6 +101,13 @@ def draw_run(run: Path, out: Path, picture: Picture, title: str = "") -> Path:
     every = [wall for still in stills for wall in still]
     low, high = limits(views, every, picture.region and viewpoint.turned_box(picture.region))
     wide, tall = high - low
+    if not wide * NARROWEST >= tall > 0.0:
+        raise SceneError(
+            f"a picture in the {viewpoint.name} view shows {viewpoint.names[0]} and "
+            f"{viewpoint.names[1]}, and a region must extend along both, along "
+            f"{viewpoint.names[0]} by a {NARROWEST:g}th of {viewpoint.names[1]} or more; found "
+            f"{wide:g} and {tall:g} m. Choose another region or view."
+        )
     stretch = max(1.0, wide / tall * LOWEST)
     text = f"{title}\n{_said(picture, cut, stretch)}".strip()
     figure, panels = place_panels(len(views), stretch * tall / wide, text)

@@ -10,7 +10,7 @@ from quintet.coupler.files.run_files import DRAWN, DRAWN_3D, RESULTS, SCENE
 from quintet.coupler.report.free_place import free_place
 from quintet.coupler.report.picture import Picture, draw_run
 from quintet.coupler.report.show import results
-from quintet.coupler.report.view_steps import view_files
+from quintet.coupler.report.view_steps import DISPLACEMENT, view_files
 from quintet.coupler.report.viewpoint import SIDE, VIEWPOINTS, Box
 from quintet.coupler.scene.read import parse
 from quintet.interfaces.errors import SceneError
@@ -117,6 +117,11 @@ def _picture(files: Sequence[Path], output: Mapping[str, Any], wanted: Wanted) -
     due = [time for time in output.get("pictures", ()) if time <= last]
     shows = {path.name.partition(".")[0]: tuple(vtkhdf_reader.units(path)) for path in files}
     mistakes = [*_unknown_fields(shows, wanted.colours), *_unknown_names(shows, wanted.ranges)]
+    if wanted.displacement_scale and not any(DISPLACEMENT in fields for fields in shows.values()):
+        mistakes.append(
+            "--displacement-scale is for components that show displacements; none of "
+            f"{', '.join(shows)} does. Remove it."
+        )
     if mistakes:
         raise SceneError(*mistakes)
     asked = {colour.partition(".")[0] for colour in wanted.colours}

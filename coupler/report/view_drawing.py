@@ -11,6 +11,7 @@ import numpy as np
 from quintet.coupler.report.field_drawing import draw_field, is_field
 from quintet.coupler.report.view_steps import Quantity, Shown, Still, spacing
 from quintet.interfaces.component import Array
+from quintet.interfaces.errors import SceneError
 from quintet.interfaces.faces import CLAMPED, SYMMETRY
 from quintet.interfaces.faces import WALL as WALL_FACE
 
@@ -61,6 +62,12 @@ def colour_scales(
         norm = Normalize(*(chosen.get(quantity) or _range(values)))
         colours = "gray" if quantity.name in PHOTOGRAPHS else MAPS[len(scales) % len(MAPS)]
         scales[quantity] = ScalarMappable(norm, colours)
+    plain = {shown.name for shown in views[0] if shown.quantity not in scales}
+    if useless := [name for name in ranges if name in plain]:
+        raise SceneError(
+            f"--range {useless[0]}=...: nothing of {useless[0]} has colours that stand for values. "
+            f"Choose them by --colour {useless[0]}.FIELD."
+        )
     return scales
 
 

@@ -154,8 +154,13 @@ def test_another_file_is_not_replaced_without_force(folder, capsys):
         (["--colour", "sea.pressure"], "component sea is not known. Known here: ball, water."),
         (["--range", "sea=1,2"], "component sea is not known"),
         (["--out", "a.txt"], "it must end with one of .png, .svg, .pdf, .jpg; found .txt"),
+        (["--displacement-scale", "5"], "none of ball, water does. Remove it."),
+        (["--region", *"000011"], "a region must extend along both"),
+        (["--region", *"000", "0.001", "1", "9"], "found 0.001 and 9 m. Choose another region"),
         (["--out", "file/a.png"], "--out file/a.png: it must lie in a folder; file is none"),
         (["--out", "folder.png", "--force"], "it must be a file; found a folder"),
+        (["--series", "--times", "0.1", "--3d"], "for which --times, --3d says nothing"),
+        (["--series", "--view", "top", "--range", "ball=0,1"], "--range, --view says nothing"),
     ],
 )
 def test_mistakes_are_told(folder, arguments, message, capsys, monkeypatch):
@@ -170,6 +175,15 @@ def test_mistakes_are_told(folder, arguments, message, capsys, monkeypatch):
 def test_a_range_has_two_ends(folder, text, capsys):
     assert _command(folder, "--range", text) == 2
     assert "--range" in capsys.readouterr().err
+
+
+def test_a_range_of_what_has_no_colours_is_refused(tmp_path, capsys):
+    box = VtkHdf(tmp_path / "box.vtkhdf", UNITS)
+    box.append(0.0, {"points": CORNERS, "velocity": CORNERS, "cells": FACES})
+    box.close()
+    assert _command(tmp_path, "--range", "box=0,1") == 2
+    assert "Choose them by --colour box.FIELD." in capsys.readouterr().err
+    assert _command(tmp_path, "--range", "box=0,1", "--colour", "box.velocity") == 0
 
 
 def test_a_folder_without_views_is_refused(tmp_path, capsys):
