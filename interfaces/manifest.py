@@ -11,7 +11,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-from quintet.interfaces.component import PATIENCE, Array, Component, Field, Fields, Port
+from quintet.interfaces.component import PATIENCE, Array, Component, Field, Fields, Keys, Port
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.installed import installed
 from quintet.interfaces.params import unknown
@@ -110,6 +110,9 @@ class Manifest:
     instants that it gives at the start: by these a link is checked before anything runs.
     ``complete`` returns its table of a scene with what its partners know already: it gets the
     table, unchecked, and what they state in ``initial``, by the names of the ports that take it.
+    ``joins`` refuses, with a `SceneError`, what its component's `bind` would refuse: it gets the
+    parameters, the static fields of partners as far as their ``initial`` has them, and the names of
+    the ports that are joined.
     """
 
     kind: str
@@ -120,6 +123,7 @@ class Manifest:
     plan: Callable[[Any], Plan | None] | None = None
     initial: Callable[[Any], Fields] | None = None
     complete: Callable[[dict[str, Any], Fields], dict[str, Any]] | None = None
+    joins: Callable[[Any, Fields, Keys], None] | None = None
     bench: str = ""  # "module:function"
     conform: str = ""  # "module:function"
     patience: float = PATIENCE  # s, how long it may keep others waiting beyond three usual windows

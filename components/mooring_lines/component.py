@@ -42,11 +42,10 @@ class MooringLines(Component):
 
     def bind(self, static: Fields, joined: Keys) -> None:
         """Make room for the bodies that links bring."""
-        features.refuse_half_links(joined)
+        features.refuse_joins(self.params, static, joined)
         self.mass = np.full(1 + int(self.lines.body.max()), math.inf)
         if "motion.mass" in static:
             self.mass = np.array(static["motion.mass"])
-            features.refuse_missing_bodies(self.params, len(self.mass))
         self.state = first_state(self.params.lines, len(self.mass))
 
     def prime(self, fields: Fields) -> None:

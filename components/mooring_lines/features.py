@@ -8,7 +8,14 @@ from quintet.interfaces.component import Fields, Keys
 from quintet.interfaces.errors import SceneError
 
 
-def refuse_missing_bodies(params: MooringLinesParams, bodies: int) -> None:
+def refuse_joins(params: MooringLinesParams, static: Fields, joined: Keys) -> None:
+    """Refuse what links bring, as a scene is checked and as ports are joined."""
+    _refuse_half_links(joined)
+    if "motion.mass" in static:
+        _refuse_missing_bodies(params, len(static["motion.mass"]))
+
+
+def _refuse_missing_bodies(params: MooringLinesParams, bodies: int) -> None:
     """Refuse lines of bodies that no partner has."""
     wrong = [(k, line.body) for k, line in enumerate(params.lines) if line.body >= bodies]
     if wrong:
@@ -21,7 +28,7 @@ def refuse_missing_bodies(params: MooringLinesParams, bodies: int) -> None:
         )
 
 
-def refuse_half_links(joined: Keys) -> None:
+def _refuse_half_links(joined: Keys) -> None:
     """Refuse links that bring the motion of bodies and take no load, or the other way round."""
     ports = {"motion", "load"}
     if joined and not ports <= joined:

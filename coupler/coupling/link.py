@@ -107,6 +107,11 @@ class Link(ABC):
     name: str  # in the scene
     transfers: tuple[Transfer, ...]  # what it carries, in either direction
 
+    @property
+    def ends(self) -> set[str]:
+        """The components that it joins."""
+        return {name for transfer in self.transfers for name in transfer.ends}
+
     def demands(self) -> Demands:
         """What it needs of steps and schemes; by default nothing: any steps, any scheme."""
         return Demands()

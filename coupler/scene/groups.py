@@ -11,6 +11,7 @@ from quintet.coupler.coupling.link import Link
 from quintet.coupler.coupling.plan import CouplingPlan
 from quintet.coupler.measures.evaluation import lacking_items
 from quintet.coupler.measures.expectation import Expectation
+from quintet.coupler.scene.joins import refused_joins
 from quintet.coupler.scene.scene import NAME, ComponentPlan, GroupSettings, SceneFile
 from quintet.interfaces.component import Fields, lacked
 from quintet.interfaces.params import read, shown, unknown
@@ -115,15 +116,14 @@ def refused(
 
 
 def begins_wrong(
-    components: dict[str, ComponentPlan], links: list[Link], expect: list[Expectation]
+    components: dict[str, ComponentPlan], all_links: list[Link], expect: list[Expectation]
 ) -> list[str]:
-    """What links and expectations refuse of how components begin, where their kinds can tell.
+    """What links, kinds and expectations refuse of how components begin, as far as it is known.
 
     Of components that begin from another run that is found when their ports are joined.
     """
     begun = {name for name, component in components.items() if component.begun}
-    ends = [{name for t in link.transfers for name in t.ends} for link in links]
-    links = [link for link, of_link in zip(links, ends, strict=True) if begun.isdisjoint(of_link)]
+    links = [link for link in all_links if begun.isdisjoint(link.ends)]
     linked = [name for link in links for transfer in link.transfers for name in transfer.ends]
     initial: dict[str, Fields] = {}
     for name in dict.fromkeys([*linked, *(expectation.component for expectation in expect)]):
@@ -133,6 +133,7 @@ def begins_wrong(
             cause = f"{type(error).__name__}: {error}"
             return [f"components.{name}: its start cannot be computed ({cause}). Correct it."]
     refused = [text for link in links for text in link.refusals(initial)]
+    refused += refused_joins(components, all_links, initial, begun)
     return [*refused, *lacking_items(expect, initial)]
 
 

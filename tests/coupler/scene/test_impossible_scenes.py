@@ -36,6 +36,28 @@ CASES = {
         "links.0.pairs must be pairs of ports, the giver first, as in "
         """[["a.motion", "b.foot"]]; found [[[], 'lower.load']]. Name both of each.""",
     ),
+    "a set of nodes that is nowhere": (
+        ["cantilever", "--set", 'components.beam.fixed=[{node_set="clmp"}]'],
+        "components.beam: fixed.0: node_set clmp is not known. Did you mean clamp?",
+    ),
+    "a set of heated nodes that is nowhere": (
+        ["heated_slab", "--set", 'components.slab.coupled_faces=[{node_set="top"}]'],
+        "components.slab: coupled_faces.0: node_set top is not known.",
+    ),
+    "a gauge of a set that is nowhere": (
+        ["cantilever", "--set", 'components.beam.gauges.node_set_gauges=["nix"]'],
+        "components.beam: gauges.node_set_gauges.0: node_set nix is not known.",
+    ),
+    "a line of a body that is missing": (
+        ["moored_buoy", "--set", "components.chains.lines.1.body=3"],
+        "components.chains: lines.1.body must be below 1, the number of bodies that links bring; "
+        "found 3. Correct it.",
+    ),
+    "a link of motion without loads": (
+        ["moored_buoy", "--set", 'links.0.pairs=[["buoy.motion", "chains.motion"]]'],
+        "components.chains: links must join both motion and load of mooring lines; load has no "
+        "partner. Add a pair for it to the link.",
+    ),
     "no pairs": (["two_springs", "--set", "links.0.pairs=[]"], "links.0.pairs must be pairs of"),
     "lists in the place of components": (
         ["floating_cube", "--set", "links.0.between=[[], []]"],

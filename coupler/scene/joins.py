@@ -1,0 +1,71 @@
+"""What kinds refuse of joined ports and of their partners, before a component is built."""
+
+from collections.abc import Iterator, Mapping
+
+from quintet.coupler.coupling.exchange import Exchange
+from quintet.coupler.coupling.link import Link
+from quintet.coupler.coupling.links.direct import Direct
+from quintet.coupler.scene.scene import ComponentPlan
+from quintet.interfaces.component import Fields
+from quintet.interfaces.errors import SceneError
+
+
+def refused_joins(
+    components: Mapping[str, ComponentPlan],
+    links: list[Link],
+    initial: Mapping[str, Fields],
+    begun: set[str],
+) -> Iterator[str]:
+    """Yield what the kinds of components refuse of their joined ports.
+
+    Parameters
+    ----------
+    components
+        By their names.
+    links
+        Of the scene.
+    initial
+        What linked components state before they are built.
+    begun
+        Components that begin from another run: nothing is said of them and of their partners.
+    """
+    if any(component.unread for component in components.values()):  # nor are their links
+        return
+    ports = {name: (component.takes, component.gives) for name, component in components.items()}
+    exchange = Exchange(links, ports)
+    unknown = {name for link in links if not begun.isdisjoint(link.ends) for name in link.ends}
+    for name, component in components.items():
+        if component.manifest.joins is None or name in begun | unknown:
+            continue
+        static, joined = _described(name, links, exchange, initial), exchange.joined(name)
+        try:
+            component.manifest.joins(component.checked, static, frozenset(joined))
+        except SceneError as error:
+            yield from (f"components.{name}: {mistake}" for mistake in error.mistakes)
+
+
+def _described(
+    name: str, links: list[Link], exchange: Exchange, initial: Mapping[str, Fields]
+) -> Fields:
+    """Static fields of a component's partners, of the ports about which all partners state them.
+
+    Links other than direct ones make static fields of samples, which need components.
+    """
+    direct = [link for link in links if isinstance(link, Direct) and name in link.ends]
+    lacking = {
+        key.partition(".")[0]
+        for link in links
+        if link not in direct
+        for transfer in link.transfers
+        if transfer.taker == name
+        for key in transfer.fills
+    }
+    lacking |= {
+        taken.name
+        for link in direct
+        for giver, giving, taker, taken in link.joined
+        for field in taken.static
+        if taker == name and f"{giving.name}.{field.name}" not in initial[giver]
+    }
+    merged = Exchange(direct, exchange.ports).bind(initial)[name]
+    return {key: array for key, array in merged.items() if key.partition(".")[0] not in lacking}
