@@ -17,7 +17,14 @@ from quintet.interfaces.quantities import has_quantities, in_si, is_in_si
 Table = dict[str, Any]
 TABLES = {field.name for field in fields(SceneTables)}
 LEVEL = "`unit`, after offset and scale"
-LIKE_FIELD = ("rms", "at", "max", "min", "mean")  # measures in the unit of what is measured
+LIKE_FIELD = (
+    "rms",
+    "at",
+    "max",
+    "min",
+    "mean",
+    "amplitude",
+)  # measures in the unit of what is measured
 OF_PARAMETER = "of the parameter"
 OF_OTHERS = ("`unit`", LEVEL, OF_PARAMETER)  # units that another key of the scene gives
 
@@ -48,6 +55,15 @@ def units_of_keys(scene: Scene, paths: Iterable[str]) -> dict[str, str]:
     conversion = _Conversion(scene.resolved, scene.folder, imports=True)
     units = {path: conversion.unit_at(path) for path in paths}
     return {path: unit for path, unit in units.items() if unit != "1" and is_in_si(unit)}
+
+
+def takes_number(table: Table, folder: Path, imports: bool, path: str) -> bool:
+    """Whether a key of a scene, by its dotted path, takes numbers that need not be whole.
+
+    It is false of a key that is not known.
+    """
+    key = _Conversion(table, folder, imports).key_at(path)
+    return key is not None and key.numeric and "whole" not in key.words
 
 
 class _Conversion:
@@ -122,6 +138,11 @@ class _Conversion:
 
     def unit_at(self, path: str) -> str:
         """Unit of the key at a dotted path of the scene; "" where there is none."""
+        key = self.key_at(path)
+        return key.unit if key else ""
+
+    def key_at(self, path: str) -> Key | None:
+        """The key at a dotted path of the scene, or None."""
         names = path.split(".")
         params: type | None = SceneFile
         if names[0] == "components" and len(names) > 2:
@@ -129,18 +150,18 @@ class _Conversion:
             table = components.get(names[1]) if isinstance(components, dict) else None
             params = self._params(table.get("kind")) if isinstance(table, dict) else None
             names = names[2:]
-        return next(_units(params, names), "") if params else ""
+        return next(_keys_on(params, names), None) if params else None
 
 
-def _units(params: type, names: list[str]) -> Iterator[str]:
-    """Yield the unit of the key at the end of a path through tables, lists and names."""
+def _keys_on(params: type, names: list[str]) -> Iterator[Key]:
+    """Yield the key at the end of a path through tables, lists and names."""
     known = {key.name: key for key in keys(params)}
     for number, name in enumerate(names):
         if key := known.get(name):
             if key.inner is None:
-                yield key.unit
+                yield key
             else:
-                yield from _units(key.inner, names[number + 1 :])
+                yield from _keys_on(key.inner, names[number + 1 :])
             return
 
 

@@ -10,7 +10,7 @@ of that size is given by `refines`, or follows from its path.
 """
 
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from copy import deepcopy
 from dataclasses import dataclass, field, replace
 from typing import Any, Literal, get_args
@@ -102,9 +102,15 @@ def kind_of(path: str, has_links: bool) -> Kind:
 
 
 def read_refinements(
-    tables: list[Table], make_variant: MakeVariant
+    tables: list[Table],
+    make_variant: MakeVariant,
+    is_number: Callable[[str], bool] = lambda _: False,
 ) -> tuple[list[Refinement], list[str]]:
-    """Check the refinements of a scene; return them, and every mistake."""
+    """Check the refinements of a scene; return them, and every mistake.
+
+    `is_number` tells whether a key takes numbers that need not be whole: ``window = 2`` is a size
+    of 2 s, and no count.
+    """
     refinements: list[Refinement] = []
     variants: list[Table] = []
     mistakes: list[str] = []
@@ -115,7 +121,7 @@ def read_refinements(
         kind = table.refines or kind_of(table.size, bool(variant.get("links")))
         size = None
         if table.size and not wrong:
-            size, wrong = _size(place, table.size, variant)
+            size, wrong = _size(place, table.size, variant, is_number)
             mistakes += wrong
             paths.setdefault(kind, {})[table.size] = None
         refinements.append(Refinement(table.label, table.settings, size, kind))
@@ -123,7 +129,7 @@ def read_refinements(
     mistakes += _clashes(refinements, paths)
     if not mistakes:
         chosen = {kind: next(iter(names)) for kind, names in paths.items()}
-        refinements = _compared(refinements, variants, chosen)
+        refinements = _compared(refinements, variants, chosen, is_number)
     return refinements, mistakes
 
 
@@ -143,8 +149,16 @@ def _clashes(refinements: list[Refinement], paths: dict[Kind, dict[str, None]]) 
     return mistakes
 
 
-def _size(place: str, path: str, table: Table) -> tuple[float | None, list[str]]:
+def _value(table: Table, path: str, is_number: Callable[[str], bool]) -> tuple[Any, str]:
+    """Value at a path, or why there is none; whole numbers are counts only of keys that count."""
     value, wrong = value_at(table, path)
+    return (float(value) if type(value) is int and is_number(path) else value), wrong
+
+
+def _size(
+    place: str, path: str, table: Table, is_number: Callable[[str], bool]
+) -> tuple[float | None, list[str]]:
+    value, wrong = _value(table, path, is_number)
     if wrong:
         return None, [f"{place}.size {wrong}"]
     size = _number(value)
@@ -157,14 +171,17 @@ def _size(place: str, path: str, table: Table) -> tuple[float | None, list[str]]
 
 
 def _number(value: Any) -> float | None:
-    """Size that a value is: smaller is finer; of a whole number, a count, its inverse."""
+    """Size that a value is: smaller is finer; of a count, which is whole, its inverse."""
     if isinstance(value, bool) or not isinstance(value, (int, float)) or not value > 0:
         return None
     return 1.0 / value if isinstance(value, int) else value
 
 
 def _compared(
-    refinements: list[Refinement], variants: list[Table], paths: Mapping[Kind, str]
+    refinements: list[Refinement],
+    variants: list[Table],
+    paths: Mapping[Kind, str],
+    is_number: Callable[[str], bool],
 ) -> list[Refinement]:
     """Add to each refinement the sizes of all kinds, and the kinds to whose order it contributes.
 
@@ -176,7 +193,7 @@ def _compared(
         members = [k for k, r in enumerate(refinements) if r.kind == kind and r.size is not None]
         taken = {refinements[k].size for k in members}
         for number, variant in enumerate(variants):
-            size = _number(value_at(variant, path)[0])
+            size = _number(_value(variant, path, is_number)[0])
             joins = size not in taken and any(others[number] == others[k] for k in members)
             if number in members or (size is not None and joins):
                 ladders[number].append(kind)
@@ -188,10 +205,15 @@ def _compared(
             sizes={
                 kind: size
                 for kind, path in paths.items()
-                if (size := _number(value_at(variant, path)[0])) is not None
+                if (size := _number(_value(variant, path, is_number)[0])) is not None
             },
             ladders=tuple(kinds),
-            varied={p: value_at(variant, p)[0] for p in every_path if not value_at(variant, p)[1]},
+            varied={
+                path: value
+                for path in every_path
+                for value, wrong in [_value(variant, path, is_number)]
+                if not wrong
+            },
         )
         for refinement, variant, kinds in zip(refinements, variants, ladders, strict=True)
     ]

@@ -37,14 +37,15 @@ def read_variants(
     scope: Scope | None,
     preset: str = "",
     with_ensemble: bool = True,
+    is_number: Callable[[str], bool] = lambda _: False,
 ) -> tuple[Variants, list[str]]:
     """Check refinements, limits, scans, controls and ensemble; with mistakes there is no scope.
 
-    Controls are those of the scene without a preset.
+    Controls are those of the scene without a preset. `is_number` is that of `read_refinements`.
     """
     make_variant = variant_maker(scene, check)
     inherits = bool(preset) and "scan" not in scene["presets"][preset]
-    refinements, wrong = read_refinements(tables["study"], make_variant)
+    refinements, wrong = read_refinements(tables["study"], make_variant, is_number)
     limits, wrong_limits = read_limits(tables["stability"], make_variant, scope)
     expected = scope.expected if scope else None
     scans, wrong_scans = read_scans(tables["scan"], make_variant, expected, inherits)

@@ -5,15 +5,17 @@ import copy
 import pytest
 
 from quintet.coupler.scene.overrides import put
+from quintet.coupler.scene.quantity_texts import takes_number
+from quintet.coupler.scene.read import load
 from quintet.coupler.scene.study_table import kind_of, read_refinements
 
 
-def read(tables, scene):
+def read(tables, scene, *is_number):
     def make_variant(settings):
         table = copy.deepcopy(scene)
         return table, [m for path, value in settings.items() for m in put(table, path, value)]
 
-    return read_refinements(tables, make_variant)
+    return read_refinements(tables, make_variant, *is_number)
 
 
 def refinement(label, size="", **settings):
@@ -44,6 +46,38 @@ def test_the_kind_follows_from_the_path_of_the_size(path, has_links, kind):
 
 
 SCENE = {"window": 0.1, "links": [{}], "water": {"spacing": 0.1, "depth": 2.0}}
+
+
+def test_whole_numbers_are_counts_only_of_keys_that_count():
+    """A window of 2 s is larger than one of 1 s; two elements are larger than four."""
+    scene = {"window": 2, "components": {"bar": {"elements": 2}}}
+    tables = [
+        refinement("a", "window", window=2),
+        refinement("b", "window", window=1),
+        refinement("c", "components.bar.elements", **{"components.bar.elements": 4}),
+    ]
+
+    def is_number(path):
+        return path == "window"
+
+    refinements, mistakes = read(tables, scene, is_number)
+    assert not mistakes and [r.size for r in refinements] == [2.0, 1.0, 0.25]
+    assert [r.varied["window"] for r in refinements] == [2.0, 1.0, 2.0]
+
+
+@pytest.mark.parametrize(
+    "path, number",
+    [
+        ("window", True),
+        ("components.lower.mass", True),
+        ("components.lower.threads", False),
+        ("components.lower.nothing", False),
+        ("end", True),
+    ],
+)
+def test_keys_tell_whether_they_take_numbers(path, number):
+    scene = load("two_springs")
+    assert takes_number(scene.resolved, scene.folder, True, path) is number
 
 
 def test_a_refinement_counts_for_each_kind_from_which_it_differs_in_the_size_alone():
