@@ -1,6 +1,7 @@
 """The summary of a run, printed from its results.json."""
 
 import json
+import shlex
 import sys
 from collections.abc import Mapping
 from pathlib import Path
@@ -12,6 +13,7 @@ from rich.table import Table
 from rich.text import Text
 
 from quintet.coupler.files.checksums import require_sealed
+from quintet.coupler.files.run_files import read_marker
 from quintet.coupler.measures.advice import sentences
 from quintet.coupler.report.run_tables import (
     TableOfRun,
@@ -38,7 +40,7 @@ def results(folder: Path) -> dict[str, Any]:
     try:
         run = json.loads(path.read_text(encoding="utf-8"))
     except FileNotFoundError as error:
-        raise SceneError(f"run {folder}: it has no {NAME}. Run a scene into it first.") from error
+        raise SceneError(f"run {folder}: it has no {NAME}. {_remedy(Path(folder))}") from error
     except (OSError, ValueError) as error:
         raise SceneError(f"run {folder}: {path.name} must be JSON; {error}. Run again.") from error
     if not isinstance(run, dict):
@@ -47,6 +49,19 @@ def results(folder: Path) -> dict[str, Any]:
         )
     require_sealed(run, path)
     return run
+
+
+def _remedy(folder: Path) -> str:
+    """What to do about a folder without results."""
+    marker = read_marker(folder)
+    if marker is None:
+        return "Run a scene into it first."
+    if marker.kind == "run":
+        return (
+            "The run goes on, or was killed. Wait for its end, or continue it: quintet run "
+            f"--resume {shlex.quote(str(folder))}."
+        )
+    return f"It is the folder of a {marker.kind}. Name that of one of its runs."
 
 
 def show(folder: Path, as_json: bool = False) -> None:

@@ -5,6 +5,7 @@ import json
 
 import pytest
 
+from quintet.coupler.files.run_files import new_marker, write_marker
 from quintet.coupler.report.show import results, show
 from quintet.interfaces.errors import SceneError
 
@@ -175,6 +176,21 @@ def test_a_folder_without_results_is_refused(tmp_path):
         (tmp_path / "results.json").write_text(text)
         with pytest.raises(SceneError, match=word):
             results(tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("kind", "remedy"),
+    [
+        ("run", r"continue it: quintet run --resume '.*a run'"),
+        ("study", "It is the folder of a study. Name that of one of its runs."),
+    ],
+)
+def test_a_run_under_way_and_a_study_say_what_to_do(tmp_path, kind, remedy):
+    folder = tmp_path / "a run"
+    folder.mkdir()
+    write_marker(folder, new_marker(kind, "dam", []))
+    with pytest.raises(SceneError, match=remedy):
+        results(folder)
 
 
 def test_an_expectation_without_a_value_says_why(tmp_path, capsys):
