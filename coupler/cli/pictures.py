@@ -181,10 +181,17 @@ def _draw_series(options: argparse.Namespace) -> int:
     from quintet.coupler.report.series_drawing import draw_series
 
     fields = Run(options.folder).fields
-    keys, _ = chosen(fields, options.series)
+    keys, left_out = chosen(fields, options.series)
+    if left_out and not keys:
+        raise SceneError(
+            f"--series: all recorded fields have more than 1000 numbers a row: "
+            f"{', '.join(left_out)}. Name those that shall be drawn."
+        )
     place = free_place(options.folder / SERIES_DRAWN, options.out, FORMATS, options.force)
     out = draw_series(fields, keys, place, title_of(options.folder))
     print(f"drawn: {os.path.relpath(out)}")
+    for key in left_out:
+        print(f"left out, for a row has more than 1000 numbers: {key}; name it to draw it")
     return 0
 
 

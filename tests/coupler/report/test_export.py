@@ -118,6 +118,8 @@ def test_wide_fields_are_left_out_unless_they_are_named(folder, tmp_path, monkey
     assert "left out" in (output := capsys.readouterr().out) and "spring.motion.velocity" in output
     assert command("export", folder, "spring.motion", "--out", tmp_path / "b") == 0
     assert (tmp_path / "b/spring.motion.csv").is_file()
+    assert command("draw", folder, "--series") == 2
+    assert "Name those that shall be drawn." in capsys.readouterr().err
 
 
 def test_a_run_becomes_a_table_of_pandas(folder):
