@@ -132,7 +132,8 @@ def _sweep(content: Content) -> Iterator[Part]:
     axes = [
         Axis(path, tuple(values), units.get(path, "")) for path, values in content["over"].items()
     ]
-    yield Part("Runs", table=_plain(sweep_report.table(axes, content["rows"])))
+    table = sweep_report.table(axes, content["rows"])
+    yield Part("Runs", [str(table.caption)] if table.caption else [], _plain(table))
 
 
 def _calibrate(content: Content) -> Iterator[Part]:

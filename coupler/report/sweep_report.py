@@ -2,7 +2,7 @@
 
 import csv
 import io
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -102,15 +102,15 @@ def _numbers(values: Sequence[Any]) -> bool:
 
 
 def _draw(panel: Any, name: str, across: Axis, others: Sequence[Axis], rows: Sequence[Row]) -> None:
-    places = _places(across)
+    places, names = _places(across), _short_names([across, *others])
     groups: dict[str, list[Row]] = {}
     for row in rows:
-        groups.setdefault(_name(row, others), []).append(row)
+        groups.setdefault(_name(row, others, names), []).append(row)
     curves = len(groups) <= MOST_CURVES
     if not curves:
         groups = {}
         for row in rows:
-            groups.setdefault(_name(row, others[:1]), []).append(row)
+            groups.setdefault(_name(row, others[:1], names), []).append(row)
     for number, (label, some) in enumerate(groups.items()):
         points = sorted((places[_text(row, across)], row["values"][name]) for row in some)
         style = {"marker": "o", "markersize": 4, "color": f"C{number % 10}"}
@@ -121,9 +121,16 @@ def _draw(panel: Any, name: str, across: Axis, others: Sequence[Axis], rows: Seq
         panel.legend(fontsize=7, frameon=False)
 
 
-def _name(row: Row, axes: Sequence[Axis]) -> str:
-    """Name a combination of keys by the last parts of their paths."""
-    return ", ".join(f"{axis.path.rpartition('.')[2]} = {_text(row, axis)}" for axis in axes)
+def _short_names(axes: Sequence[Axis]) -> dict[str, str]:
+    """Last part of each path; the whole path where several keys end in the same one."""
+    last = {axis.path: axis.path.rpartition(".")[2] for axis in axes}
+    parts = list(last.values())
+    return {path: part if parts.count(part) == 1 else path for path, part in last.items()}
+
+
+def _name(row: Row, axes: Sequence[Axis], names: Mapping[str, str]) -> str:
+    """Name a combination of keys."""
+    return ", ".join(f"{names[axis.path]} = {_text(row, axis)}" for axis in axes)
 
 
 def _text(row: Row, axis: Axis) -> str:

@@ -10,6 +10,10 @@ import pytest
 from PIL import Image
 from spring_scene import command, write
 
+from quintet.coupler.report.series_report import PARTS
+from quintet.coupler.report.sweep_report import draw
+from quintet.coupler.scene.sweep_axes import axes_of, combinations
+
 STEP = "components.spring.step"
 STUDY = "".join(
     f'[[study]]\nlabel = "{step}"\nsettings = {{ "{STEP}" = {step} }}\nsize = "{STEP}"\n'
@@ -67,3 +71,27 @@ def test_a_series_that_has_not_ended_says_so(tmp_path, capsys):
     (out / "study.json").unlink()
     assert command("report", out) == 2
     assert "this study has no study.json yet. Go on with it" in capsys.readouterr().err
+
+
+def test_curves_of_a_sweep_over_keys_of_one_name_are_told_apart(tmp_path, monkeypatch):
+    figures = []
+    monkeypatch.setattr(
+        "quintet.coupler.report.sweep_report.save", lambda figure, out: figures.append(figure)
+    )
+    axes = axes_of({"components.a.mass": [1.0, 2.0], "components.b.mass": [3.0, 4.0]})
+    rows = [
+        {"settings": s, "values": {"x": 1.0}, "units": {"x": "m"}, "status": "done"}
+        for s in combinations(axes)
+    ]
+    draw(axes, rows, tmp_path / "a.png")
+    words = [word.get_text() for word in figures[0].axes[0].get_legend().get_texts()]
+    assert words == ["components.b.mass = 3.0", "components.b.mass = 4.0"]
+
+
+def test_the_page_of_a_long_sweep_says_that_its_table_is_cut():
+    row = {"settings": {"end": 1.0}, "values": {}, "units": {}, "status": "done", "met": True}
+    row |= {"wall": 1.0, "cpu": 1.0, "run": "a"}
+    content = {"over": {"end": [1.0]}, "rows": [row] * 61}
+    (part,) = PARTS["sweep"](content)
+    assert len(part.table.rows) == 60
+    assert part.sentences == ["the first 60 of 61 runs; all are in sweep.csv"]
