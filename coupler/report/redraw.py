@@ -7,6 +7,7 @@ from typing import Any
 
 from quintet.coupler.files import vtkhdf_reader
 from quintet.coupler.files.run_files import DRAWN, DRAWN_3D, RESULTS, SCENE
+from quintet.coupler.measures.expectation import ROUNDING
 from quintet.coupler.report.free_place import free_place
 from quintet.coupler.report.picture import Picture, draw_run
 from quintet.coupler.report.show import results
@@ -114,7 +115,7 @@ def _picture(files: Sequence[Path], output: Mapping[str, Any], wanted: Wanted) -
     """Choose the picture: what is wanted, else what the scene asks for."""
     times = [vtkhdf_reader.times(path) for path in files]
     last = max(float(steps[-1]) for steps in times)
-    due = [time for time in output.get("pictures", ()) if time <= last]
+    due = [time for time in output.get("pictures", ()) if time <= last * (1.0 + ROUNDING)]
     shows = {path.name.partition(".")[0]: tuple(vtkhdf_reader.units(path)) for path in files}
     mistakes = [*_unknown_fields(shows, wanted.colours), *_unknown_names(shows, wanted.ranges)]
     if wanted.displacement_scale and not any(DISPLACEMENT in fields for fields in shows.values()):

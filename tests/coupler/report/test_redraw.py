@@ -130,6 +130,17 @@ def test_the_command_chooses_times_colours_and_their_range(folder, drawn_figures
     assert label.startswith("pressure [Pa]") and "beyond" in label
 
 
+def test_the_picture_at_the_end_is_drawn_though_the_last_step_is_rounded(tmp_path, drawn_figures):
+    ball = VtkHdf(tmp_path / "ball.vtkhdf", UNITS)
+    for time in (0.0, 0.051 / 3 * 3):
+        ball.append(time, {"points": POINTS[:1], "velocity": POINTS[:1]})
+    ball.close()
+    assert 0.051 / 3 * 3 < 0.051
+    (tmp_path / "scene.toml").write_text("[output]\npictures = [0.0, 0.051]\n")
+    assert _command(tmp_path) == 0
+    assert len(_panels(drawn_figures[0])) == 2
+
+
 def test_a_region_may_be_given_by_any_two_opposite_corners(folder, drawn_figures):
     assert _command(folder, "--region", "0.8", "0.5", "0.3", "0.2", "0.1", "0.0") == 0
     (panel,) = _panels(drawn_figures[0])
