@@ -21,7 +21,8 @@ from quintet.coupler.report.panels import curve_panels, save
 from quintet.coupler.report.profiles import Profile, draw_profiles
 from quintet.interfaces.component import Field, fields_of
 
-IN_UNIT = ("rms", "at", "max", "min", "mean")  # measures that have the unit of their curve
+DRAWN = ("rms", "at", "max", "min", "mean")  # measures whose values lie on their curve
+IN_UNIT = (*DRAWN, "amplitude", "wave_height")  # measures that have the unit of their curve
 PANELS = 12  # at most
 COMPUTED, BAND = "tab:blue", "tab:orange"
 MARKS = (("o", "black"), ("s", "tab:red"), ("^", "tab:green"), ("D", "tab:purple"))
@@ -148,7 +149,7 @@ def _draw_oscillation(panel: Any, ones: list[Expectation], computed: Curve) -> N
         for expectation in ones
         if expectation.measure in ("period", "decay")
     }
-    if not expected:
+    if not (expected and len(computed.times)):
         return
     first = next(iter(expected.values()))
     part = between(computed, first.begin, math.inf if first.end is None else first.end)
@@ -176,7 +177,7 @@ def _draw_value(panel: Any, expectation: Expectation, computed: Curve) -> None:
         panel.errorbar(expectation.begin, value, yerr=expectation.within, fmt="o", **style)
     elif expectation.measure == "crossing":
         panel.errorbar(value, expectation.level, xerr=expectation.within, fmt="o", **style)
-    elif expectation.measure in IN_UNIT:
+    elif expectation.measure in DRAWN:
         last = float(computed.times[-1]) if len(computed.times) else expectation.begin
         span = (expectation.begin, last if expectation.end is None else expectation.end)
         if span[0] >= last:  # the run did not come so far
@@ -212,8 +213,11 @@ def _label(ones: list[Expectation], recording: Recording) -> tuple[str, str]:
         _field(expectation, recording),
         {expectation.unit for expectation in ones if expectation.measure in IN_UNIT},
     )
-    if quantity := next((other.quantity for other in ones if other.quantity), ""):
-        return quantity, units.pop() if len(units) == 1 else field.unit
+    quantity = next((other.quantity for other in ones if other.quantity), "")
+    if quantity and len(units) == 1:
+        return quantity, units.pop()
+    if quantity and abs(expectation.scale) == 1.0:
+        return quantity, field.unit
     name = _plain_name(expectation, field)
     items = recording.items(expectation.component, expectation.field)[0]
     if expectation.item in ("mean", "max", "min"):

@@ -83,6 +83,18 @@ def test_a_curve_is_called_what_the_scene_calls_it(figure):
     assert panel.get_ylabel() == "way of the cube [m]"
 
 
+def test_a_scaled_curve_has_the_unit_of_what_is_measured(figure):
+    """Of an amplitude that is the curve's; where no measure has it, the scale is written out."""
+    keys = {**COMMON, "scale": 2.5, "quantity": "heave over wave amplitude", "unit": "1"}
+    swing = Expectation(name="a", measure="amplitude", period=0.5, value=0.0, within=9, **keys)
+    (panel,) = figure(swing, values=True).axes
+    assert panel.get_ylabel() == "heave over wave amplitude [1]"
+    time = {**keys, "unit": "s"}
+    passes = Expectation(name="t", measure="crossing", level=1.0, value=0.4, within=1, **time)
+    (panel,) = figure(passes, values=True).axes
+    assert " ".join(panel.get_ylabel().split()) == "2.5 × (position x of cubes in m) [1]"
+
+
 def test_a_title_says_how_much_of_the_tolerance_is_used_up(figure):
     (panel,) = figure(END, values=True).axes
     title = " ".join(panel.get_title().split())
