@@ -91,7 +91,20 @@ def _misfit(count: int, columns: int, height: float) -> float:
 def save(figure: Any, out: Path) -> Path:
     """Write a figure in the format of the file's ending."""
     out = Path(out)
+    take_literally(figure)
     with reporting_disk(out):
         out.parent.mkdir(parents=True, exist_ok=True)
         figure.savefig(out, dpi=DOTS)
     return out
+
+
+def take_literally(figure: Any) -> None:
+    """Escape the dollar signs of all words: matplotlib reads text between two as mathematics."""
+    words = [*figure.texts]
+    legends = [*figure.legends]
+    for panel in figure.axes:
+        words += [panel.title, panel.xaxis.label, panel.yaxis.label, *panel.texts]
+        legends += [legend] if (legend := panel.get_legend()) else []
+    words += [word for legend in legends for word in legend.get_texts()]
+    for word in words:
+        word.set_text(word.get_text().replace("$", r"\$"))

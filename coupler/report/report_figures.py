@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from quintet.coupler.report.panels import CURVES, curve_panels
+from quintet.coupler.report.panels import CURVES, curve_panels, take_literally
 from quintet.coupler.report.recorded import Series
 
 ENERGIES = {"kinetic": "tab:blue", "potential": "tab:green", "internal": "tab:red"}
@@ -108,6 +108,7 @@ def _svg(figure: Any) -> str:
     # A run without pictures does not load matplotlib.
     from matplotlib import rc_context
 
+    take_literally(figure)
     file = io.StringIO()
     with rc_context({"svg.hashsalt": "quintet", "path.simplify": True}):
         figure.savefig(file, format="svg", metadata={"Date": None})

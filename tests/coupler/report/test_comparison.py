@@ -10,6 +10,7 @@ from quintet.coupler.measures.evaluation import evaluate
 from quintet.coupler.measures.expectation import Expectation
 from quintet.coupler.report import comparison as drawing
 from quintet.coupler.report.comparison import comparison
+from quintet.coupler.report.panels import save
 from quintet.coupler.scene.read import load
 from quintet.interfaces.ports import MOTION
 
@@ -93,6 +94,13 @@ def test_a_scaled_curve_has_the_unit_of_what_is_measured(figure):
     passes = Expectation(name="t", measure="crossing", level=1.0, value=0.4, within=1, **time)
     (panel,) = figure(passes, values=True).axes
     assert " ".join(panel.get_ylabel().split()) == "2.5 × (position x of cubes in m) [1]"
+
+
+def test_dollar_signs_are_no_mathematics(figure, tmp_path, monkeypatch):
+    """Mathematics that matplotlib cannot read would end a run in an error."""
+    priced = replace(END, name="$5_{ to $6", source="$\\SI{5}{m}$", quantity="way $\\frac$")
+    picture = figure(priced, values=True, title="a $\\foo$ scene")
+    assert save(picture, tmp_path / "c.png").stat().st_size > 1000
 
 
 def test_a_title_says_how_much_of_the_tolerance_is_used_up(figure):
