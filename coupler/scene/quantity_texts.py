@@ -1,5 +1,6 @@
 """Texts with units in a scene, ``"20 mm"``: each becomes a number in the unit of its key."""
 
+import contextlib
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import fields
 from pathlib import Path
@@ -11,20 +12,15 @@ from quintet.coupler.scene.foreign_code import trusted_params
 from quintet.coupler.scene.scene import GroupSettings, Scene, SceneFile
 from quintet.coupler.scene.stability_table import LimitTable
 from quintet.coupler.scene.tables import SceneTables
+from quintet.interfaces.errors import SceneError
 from quintet.interfaces.keys import Key, keys
-from quintet.interfaces.quantities import has_quantities, in_si, is_in_si
+from quintet.interfaces.quantities import has_quantities, in_si, is_in_si, number_in
 
 Table = dict[str, Any]
 TABLES = {field.name for field in fields(SceneTables)}
 LEVEL = "`unit`, after offset and scale"
-LIKE_FIELD = (
-    "rms",
-    "at",
-    "max",
-    "min",
-    "mean",
-    "amplitude",
-)  # measures in the unit of what is measured
+# Measures in the unit of what is measured.
+LIKE_FIELD = ("rms", "at", "max", "min", "mean", "amplitude")
 OF_PARAMETER = "of the parameter"
 OF_OTHERS = ("`unit`", LEVEL, OF_PARAMETER)  # units that another key of the scene gives
 
@@ -57,13 +53,19 @@ def units_of_keys(scene: Scene, paths: Iterable[str]) -> dict[str, str]:
     return {path: unit for path, unit in units.items() if unit != "1" and is_in_si(unit)}
 
 
-def takes_number(table: Table, folder: Path, imports: bool, path: str) -> bool:
-    """Whether a key of a scene, by its dotted path, takes numbers that need not be whole.
+def value_in_si(table: Table, folder: Path, imports: bool, path: str, value: Any) -> Any:
+    """A value of a key of a scene, by its dotted path, as the scene runs with it.
 
-    It is false of a key that is not known.
+    Whole numbers of keys that do not count are floats, texts with units numbers; what is of an
+    unknown key, or cannot be converted, stays as it is: the check of the scene refuses it.
     """
     key = _Conversion(table, folder, imports).key_at(path)
-    return key is not None and key.numeric and "whole" not in key.words
+    if key is None or not key.numeric or "whole" in key.words or isinstance(value, bool):
+        return value
+    if isinstance(value, str) and has_quantities(value):
+        with contextlib.suppress(ValueError, SceneError):
+            return number_in(value, key.unit, path)
+    return float(value) if isinstance(value, int) else value
 
 
 class _Conversion:

@@ -25,7 +25,7 @@ from quintet.coupler.scene.link_tables import read_links
 from quintet.coupler.scene.material_names import with_materials
 from quintet.coupler.scene.needs import refused_times
 from quintet.coupler.scene.overrides import put_preset, put_set
-from quintet.coupler.scene.quantity_texts import scene_in_si, takes_number
+from quintet.coupler.scene.quantity_texts import scene_in_si, value_in_si
 from quintet.coupler.scene.scene import (
     ComponentPlan,
     Scene,
@@ -197,10 +197,8 @@ def _check(
         expected = {expectation.name: expectation for expectation in expect}
         scope = Scope(file.end, gives, len(links), expected, frozenset(unread))
         check = partial(_check, path, preset=preset, imports=imports) if try_variants else None
-    is_number = partial(takes_number, table, path.parent, imports)
-    variants, wrong_variants = read_variants(
-        series, table, check, scope, preset, with_variants, is_number
-    )
+    si = partial(value_in_si, table, path.parent, imports)
+    variants, wrong_variants = read_variants(series, table, check, scope, preset, with_variants, si)
     mistakes += wrong_variants
     if mistakes or file is None or coupling is None:
         raise SceneError([f"{path.name}: {mistake}" for mistake in dict.fromkeys(mistakes)])

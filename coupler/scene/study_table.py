@@ -24,6 +24,7 @@ from quintet.coupler.scene.varied_tables import (
 )
 from quintet.interfaces.params import parameters, shown
 
+InSi = Callable[[str, Any], Any]  # path of a key, its value in the scene -> a number in SI
 Kind = Literal["coupling", "time step", "spacing", "model"]
 KINDS: tuple[Kind, ...] = get_args(Kind)
 COUPLED = ("window", "scheme", "iteration", "groups", "links")  # first parts of paths
@@ -104,12 +105,12 @@ def kind_of(path: str, has_links: bool) -> Kind:
 def read_refinements(
     tables: list[Table],
     make_variant: MakeVariant,
-    is_number: Callable[[str], bool] = lambda _: False,
+    si: InSi = lambda _, value: value,
 ) -> tuple[list[Refinement], list[str]]:
     """Check the refinements of a scene; return them, and every mistake.
 
-    `is_number` tells whether a key takes numbers that need not be whole: ``window = 2`` is a size
-    of 2 s, and no count.
+    `si` gets the path of a key and its value, and returns the number that the scene runs with:
+    ``window = 2`` is a size of 2 s, and no count, as is ``window = "2 s"``.
     """
     refinements: list[Refinement] = []
     variants: list[Table] = []
@@ -121,7 +122,7 @@ def read_refinements(
         kind = table.refines or kind_of(table.size, bool(variant.get("links")))
         size = None
         if table.size and not wrong:
-            size, wrong = _size(place, table.size, variant, is_number)
+            size, wrong = _size(place, table.size, variant, si)
             mistakes += wrong
             paths.setdefault(kind, {})[table.size] = None
         refinements.append(Refinement(table.label, table.settings, size, kind))
@@ -129,7 +130,7 @@ def read_refinements(
     mistakes += _clashes(refinements, paths)
     if not mistakes:
         chosen = {kind: next(iter(names)) for kind, names in paths.items()}
-        refinements = _compared(refinements, variants, chosen, is_number)
+        refinements = _compared(refinements, variants, chosen, si)
     return refinements, mistakes
 
 
@@ -149,16 +150,14 @@ def _clashes(refinements: list[Refinement], paths: dict[Kind, dict[str, None]]) 
     return mistakes
 
 
-def _value(table: Table, path: str, is_number: Callable[[str], bool]) -> tuple[Any, str]:
-    """Value at a path, or why there is none; whole numbers are counts only of keys that count."""
+def _value(table: Table, path: str, si: InSi) -> tuple[Any, str]:
+    """Value at a path as the scene runs with it, or why there is none."""
     value, wrong = value_at(table, path)
-    return (float(value) if type(value) is int and is_number(path) else value), wrong
+    return value if wrong else si(path, value), wrong
 
 
-def _size(
-    place: str, path: str, table: Table, is_number: Callable[[str], bool]
-) -> tuple[float | None, list[str]]:
-    value, wrong = _value(table, path, is_number)
+def _size(place: str, path: str, table: Table, si: InSi) -> tuple[float | None, list[str]]:
+    value, wrong = _value(table, path, si)
     if wrong:
         return None, [f"{place}.size {wrong}"]
     size = _number(value)
@@ -181,7 +180,7 @@ def _compared(
     refinements: list[Refinement],
     variants: list[Table],
     paths: Mapping[Kind, str],
-    is_number: Callable[[str], bool],
+    si: InSi,
 ) -> list[Refinement]:
     """Add to each refinement the sizes of all kinds, and the kinds to whose order it contributes.
 
@@ -193,7 +192,7 @@ def _compared(
         members = [k for k, r in enumerate(refinements) if r.kind == kind and r.size is not None]
         taken = {refinements[k].size for k in members}
         for number, variant in enumerate(variants):
-            size = _number(_value(variant, path, is_number)[0])
+            size = _number(_value(variant, path, si)[0])
             joins = size not in taken and any(others[number] == others[k] for k in members)
             if number in members or (size is not None and joins):
                 ladders[number].append(kind)
@@ -205,13 +204,13 @@ def _compared(
             sizes={
                 kind: size
                 for kind, path in paths.items()
-                if (size := _number(_value(variant, path, is_number)[0])) is not None
+                if (size := _number(_value(variant, path, si)[0])) is not None
             },
             ladders=tuple(kinds),
             varied={
                 path: value
                 for path in every_path
-                for value, wrong in [_value(variant, path, is_number)]
+                for value, wrong in [_value(variant, path, si)]
                 if not wrong
             },
         )

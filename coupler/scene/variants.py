@@ -10,7 +10,7 @@ from quintet.coupler.scene.overrides import put, put_preset
 from quintet.coupler.scene.scan_table import Scan, read_scans
 from quintet.coupler.scene.stability_checks import Scope, read_limits
 from quintet.coupler.scene.stability_table import Limit
-from quintet.coupler.scene.study_table import Refinement, read_refinements
+from quintet.coupler.scene.study_table import InSi, Refinement, read_refinements
 from quintet.coupler.scene.varied_tables import MakeVariant, Table
 from quintet.interfaces.errors import SceneError
 
@@ -37,15 +37,15 @@ def read_variants(
     scope: Scope | None,
     preset: str = "",
     with_ensemble: bool = True,
-    is_number: Callable[[str], bool] = lambda _: False,
+    si: InSi = lambda _, value: value,
 ) -> tuple[Variants, list[str]]:
     """Check refinements, limits, scans, controls and ensemble; with mistakes there is no scope.
 
-    Controls are those of the scene without a preset. `is_number` is that of `read_refinements`.
+    Controls are those of the scene without a preset. `si` is that of `read_refinements`.
     """
     make_variant = variant_maker(scene, check)
     inherits = bool(preset) and "scan" not in scene["presets"][preset]
-    refinements, wrong = read_refinements(tables["study"], make_variant, is_number)
+    refinements, wrong = read_refinements(tables["study"], make_variant, si)
     limits, wrong_limits = read_limits(tables["stability"], make_variant, scope)
     expected = scope.expected if scope else None
     scans, wrong_scans = read_scans(tables["scan"], make_variant, expected, inherits)

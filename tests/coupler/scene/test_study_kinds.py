@@ -5,17 +5,17 @@ import copy
 import pytest
 
 from quintet.coupler.scene.overrides import put
-from quintet.coupler.scene.quantity_texts import takes_number
+from quintet.coupler.scene.quantity_texts import value_in_si
 from quintet.coupler.scene.read import load
 from quintet.coupler.scene.study_table import kind_of, read_refinements
 
 
-def read(tables, scene, *is_number):
+def read(tables, scene, *si):
     def make_variant(settings):
         table = copy.deepcopy(scene)
         return table, [m for path, value in settings.items() for m in put(table, path, value)]
 
-    return read_refinements(tables, make_variant, *is_number)
+    return read_refinements(tables, make_variant, *si)
 
 
 def refinement(label, size="", **settings):
@@ -57,27 +57,31 @@ def test_whole_numbers_are_counts_only_of_keys_that_count():
         refinement("c", "components.bar.elements", **{"components.bar.elements": 4}),
     ]
 
-    def is_number(path):
-        return path == "window"
+    def si(path, value):
+        return float(value) if path == "window" else value
 
-    refinements, mistakes = read(tables, scene, is_number)
+    refinements, mistakes = read(tables, scene, si)
     assert not mistakes and [r.size for r in refinements] == [2.0, 1.0, 0.25]
     assert [r.varied["window"] for r in refinements] == [2.0, 1.0, 2.0]
 
 
 @pytest.mark.parametrize(
-    "path, number",
+    "path, value, number",
     [
-        ("window", True),
-        ("components.lower.mass", True),
-        ("components.lower.threads", False),
-        ("components.lower.nothing", False),
-        ("end", True),
+        ("window", 2, 2.0),
+        ("window", "2 ms", 0.002),
+        ("window", "auto", "auto"),
+        ("window", "2 kg", "2 kg"),
+        ("components.lower.mass", 1, 1.0),
+        ("components.lower.mass", "500 g", "500 g"),  # its kind states no unit
+        ("components.lower.threads", 2, 2),
+        ("components.lower.nothing", 2, 2),
     ],
 )
-def test_keys_tell_whether_they_take_numbers(path, number):
+def test_values_are_as_the_scene_runs_with_them(path, value, number):
     scene = load("two_springs")
-    assert takes_number(scene.resolved, scene.folder, True, path) is number
+    result = value_in_si(scene.resolved, scene.folder, True, path, value)
+    assert result == number and type(result) is type(number)
 
 
 def test_a_refinement_counts_for_each_kind_from_which_it_differs_in_the_size_alone():
