@@ -27,14 +27,18 @@ def costs_and_errors(rows: Sequence[Row]) -> Table:
             summary.add_row(name, *map(three_digits, values))
 
     summary.add_row("", *map(_state, rows))
-    units = {name: unit for row in rows for name, unit in row["units"].items()}
-    for name, unit in units.items():
-        add(f"error of {name} [{unit}]", [row["errors"].get(name) for row in rows])
-        relative = [row["relative"].get(name) for row in rows]
+    # Refinements may measure different quantities by the same name.
+    for name, unit in dict.fromkeys(pair for row in rows for pair in row["units"].items()):
+        of_unit = [row if row["units"].get(name) == unit else None for row in rows]
+        add(f"error of {name} [{unit}]", [row and row["errors"].get(name) for row in of_unit])
+        relative = [row and row["relative"].get(name) for row in of_unit]
         if unit != "1":
             add("  relative [%]", [None if e is None else 100.0 * e for e in relative])
     summary.add_row("refines", *(row["kind"] for row in rows))
-    add("size", [row["size"] for row in rows])
+    sized = list(dict.fromkeys(row["kind"] for row in rows if row["size"] is not None))
+    for kind in sized:
+        name = "size" if len(sized) == 1 else f"size of the {kind}"
+        add(name, [row["size"] if row["kind"] == kind else None for row in rows])
     add("CPU [s]", [row["cpu"] for row in rows])
     add("wall [s]", [row["wall"] for row in rows])
     for name in dict.fromkeys(name for row in rows for name in row["components"]):
