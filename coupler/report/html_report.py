@@ -39,11 +39,12 @@ def render(run: Run) -> str:
     preset = f" ({results['preset']})" if results.get("preset") else ""
     transport = f" over {results['transport']}" if results.get("transport") else ""
     windows, end = results.get("windows") or 0, number(results.get("time"))
+    cause = f". Cause: {results['cause']}" if results.get("cause") else ""
     return page.render(
         f"{results.get('scene', '?')}{preset}",
         results.get("status") or "unknown",
         results.get("status") == "done",
-        summary=f"{windows} windows to t = {end} s{transport}",
+        summary=f"{windows} windows to t = {end} s{transport}{cause}",
         warnings=results.get("warnings") or [],
         fault=results.get("fault"),
         outcomes=[_outcome(outcome) for outcome in results.get("expect") or []],

@@ -84,6 +84,8 @@ def show(folder: Path, as_json: bool = False) -> None:
 def print_results(run: Mapping[str, Any], screen: Console, frame: box.Box | None = None) -> None:
     """Print results on a console, their tables in a frame or plain."""
     screen.print(_headline(run))
+    if run.get("cause"):
+        screen.print(Text(f"Cause: {run['cause']}", style="red"))
     for warning in run.get("warnings") or []:
         text = f"Warning of {warning.get('source', '?')}: {warning.get('text', warning)}"
         screen.print(Text(text, style="red"))

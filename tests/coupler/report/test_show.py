@@ -6,6 +6,8 @@ import json
 import pytest
 
 from quintet.coupler.files.run_files import new_marker, write_marker
+from quintet.coupler.report.html_report import render
+from quintet.coupler.report.run import Run
 from quintet.coupler.report.show import results, show
 from quintet.interfaces.errors import SceneError
 
@@ -158,6 +160,14 @@ def test_show_tells_what_broke(tmp_path, capsys):
     text = _text_of(tmp_path, results, capsys)
     assert "failed" in text and "component: water" in text and "window: 17" in text
     assert "killed by signal 9" in text and "    density [-1] is wrong" in text
+
+
+def test_show_tells_why_a_run_was_refused(tmp_path, capsys):
+    refused = {"scene": "dam", "status": "refused", "cause": "lines.0.body must be below 1 [m]"}
+    text = _text_of(tmp_path, refused, capsys)
+    assert "Cause: lines.0.body must be below 1 [m]" in text
+    (tmp_path / "scene.toml").write_text("")
+    assert "Cause: lines.0.body must be below 1 [m]" in render(Run(tmp_path))
 
 
 def test_show_tells_what_little_an_interrupted_run_left(tmp_path, capsys):
