@@ -13,6 +13,11 @@ import numpy as np
 from quintet.components.fe_plate.meshes.abaqus import require_readable
 from quintet.components.fe_plate.meshes.arrays import Array, Whole
 from quintet.components.fe_plate.meshes.coincidence import first_at_place, pieces
+from quintet.components.fe_plate.meshes.nastran import (
+    SUFFIXES,
+    require_basic_coordinates,
+    require_complete,
+)
 from quintet.components.fe_plate.meshes.source import (
     FOUR_NODES,
     HEXAHEDRON,
@@ -118,15 +123,22 @@ def _parsed(file: str) -> Source:
             f"file {path.name}: meshes are read by meshio, which is not installed. "
             "pip install quintet[meshes]."
         ) from error
-    if path.suffix == ".inp" and path.is_file():
+    suffix = path.suffix.lower()
+    if suffix == ".inp" and path.is_file():
         require_readable(path)
+    if suffix in SUFFIXES and path.is_file():
+        require_complete(path)
     try:
-        return as_source(meshio.read(file))
+        mesh = meshio.read(file)
+        source = as_source(mesh)
     except (Exception, SystemExit) as error:  # of any kind: each format has its own
         raise SceneError(
             f"file {path.name} must be a mesh that meshio reads; reading it found "
             f"{type(error).__name__}: {error}. Convert it."
         ) from error
+    if suffix in SUFFIXES:
+        require_basic_coordinates(path, mesh)
+    return source
 
 
 def _all_parts(name: str, source: Source) -> Source:

@@ -18,6 +18,7 @@ CUBE = np.array(
     [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)], float
 )
 ONE = np.arange(8)[None]
+CORNERS = "1, 2, 3, 4, 5, 6, 7, 8"
 
 
 def write(tmp_path, node, cells, name="block.vtk", **keys):
@@ -213,14 +214,36 @@ def test_files_without_cells_are_refused(tmp_path):
             "*INSTANCE, NAME=a, PART=b\n0., 0., 1.\n",
             "instances without a translation or rotation; found one with it",
         ),
+        ("*ELSET, ELSET=bar\nleft, right\n", "sets of elements by numbers; found names in bar"),
+        ("*ELGEN, ELSET=bar\n1, 3, 4, 1\n", "written out; found .ELGEN"),
+        ("*SYSTEM\n1., 0., 0.\n", "in the coordinates of the file; found .SYSTEM"),
+        ("*NODE, SYSTEM=c\n9, 9., 9., 9.\n", "rectangular coordinates; found SYSTEM=C"),
+        (f"*ELEMENT, TYPE=C3D8, ELSET=bar\n2, {CORNERS}\n", "in each .ELEMENT, or in none"),
+        (2 * f"*ELEMENT, TYPE=C3D8, ELSET=bar\n2, {CORNERS}\n", "found 2 of .ELEMENT bar"),
+        (f"*ELSET, ELSET=bar\n1\n*ELEMENT, TYPE=C3D8\n2, {CORNERS}\n", "ELSET bar above some"),
     ],
 )
-def test_abaqus_files_that_the_reader_would_misread_are_refused(tmp_path, text, reason):
-    file = write(tmp_path, CUBE, [("hexahedron", ONE)], "block.inp")
+@pytest.mark.parametrize("name", ["block.inp", "block.INP"])
+def test_abaqus_files_that_the_reader_would_misread_are_refused(tmp_path, name, text, reason):
+    file = write(tmp_path, CUBE, [("hexahedron", ONE)], name)
     with open(file, "a") as end:
         end.write(text)
     with pytest.raises(SceneError, match=reason):
         count(file)
+
+
+@pytest.mark.parametrize(
+    ("system", "text", "reason"),
+    [("5", "", "found 8 in others, as 5"), ("0", "INCLUDE 'more.bdf'\n", "line 10: .* INCLUDE")],
+)
+def test_nastran_files_that_the_reader_would_misread_are_refused(tmp_path, system, text, reason):
+    places = [",".join(map(str, row)) for row in CUBE.tolist()]
+    nodes = [f"GRID,{k},{system},{place}\n" for k, place in enumerate(places, 1)]
+    element = "CHEXA,1,1,1,2,3,4,5,6,+\n+,7,8\n"
+    file = tmp_path / "block.bdf"
+    file.write_text("BEGIN BULK\n" + "".join(nodes) + text + element + "ENDDATA\n")
+    with pytest.raises(SceneError, match=reason):
+        count(str(file))
 
 
 @pytest.mark.parametrize(
