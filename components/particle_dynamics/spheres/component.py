@@ -4,6 +4,7 @@ import math
 from functools import partial
 
 import numpy as np
+from numpy.typing import NDArray
 
 from quintet.components.particle_dynamics.integrators import LIMIT, STAGES
 from quintet.components.particle_dynamics.spheres import MANIFEST
@@ -40,6 +41,7 @@ ROUNDING = 1e-9  # of a step, by which the time of a launch may be missed
 CLOSING = 0.25  # of the smallest diameter, by which two may come nearer in a step
 TOUCHING = 0.005  # of the smaller diameter: the largest overlap at the end of a step
 LOADS = {"load.force": "force", "load.torque": "torque", HEAT_FLOW: "heat"}  # rows of the state
+Flags = NDArray[np.bool_]
 MOST_PARTS = 64  # into which a step is divided where several impacts of a sphere fall into it
 
 
@@ -101,26 +103,41 @@ class ParticleSpheres(Component):
         limits = [self.params.longest_step or math.inf]
         if self.frequency > 0.0:
             limits.append(self.params.courant * LIMIT[self.params.integrator] / self.frequency)
-        if self.impacts is not None:
-            closing = self.impacts.closing_speed(self.state.velocity)
-            pull = self.impacts.closing_speed(self._acceleration())
-            if closing + pull > 0.0:
-                root = math.sqrt(closing**2 + 2.0 * pull * self.room)
-                limits.append(2.0 * self.room / (closing + root))
-        return min(limits)
+        if self.impacts is None:
+            return min(limits)
+        state, launch = self.state, self.spheres.launch
+        step = min(*limits, self._approaching(state.velocity, state.launched))
+        waiting = np.where(state.launched, np.inf, launch)
+        first = -self.rows.greatest(-float(waiting.min(initial=np.inf)))  # s, of all ranks
+        rest = first - float(state.sums[TIME])  # s, until it is launched
+        if not rest < step:
+            return step
+        due = waiting < first + step - rest  # launched within the step, with speeds of their own
+        velocity = np.where(due[:, None], self.spheres.first_velocity, state.velocity)
+        return min(step, max(rest, self._approaching(velocity, state.launched | due)))
 
-    def _acceleration(self) -> Array:
-        """Accelerations (n, 3) m/s2 of launched spheres, by all forces."""
-        loaded = self.state.force / self.spheres.mass[:, None] * self.state.launched[:, None]
-        return np.asarray(loaded + self._free_acceleration())
+    def _approaching(self, velocity: Array, flying: Flags) -> float:
+        """Time [s] in which spheres with velocities (n, 3) m/s may come too near to each other."""
+        assert self.impacts
+        closing = self.impacts.closing_speed(velocity)
+        pull = self.impacts.closing_speed(self._acceleration(flying))
+        if not closing + pull > 0.0:
+            return math.inf
+        root = math.sqrt(closing**2 + 2.0 * pull * self.room)
+        return 2.0 * self.room / (closing + root)
 
-    def _free_acceleration(self) -> Array:
-        """Accelerations (n, 3) m/s2 of launched spheres, by gravity and tethers."""
+    def _acceleration(self, flying: Flags) -> Array:
+        """Accelerations (n, 3) m/s2 of spheres that fly, by all forces."""
+        loaded = self.state.force / self.spheres.mass[:, None] * flying[:, None]
+        return np.asarray(loaded + self._free_acceleration(flying))
+
+    def _free_acceleration(self, flying: Flags) -> Array:
+        """Accelerations (n, 3) m/s2 of spheres that fly, by gravity and tethers."""
         pull = self.gravity
         if self.frequency > 0.0:
             stiff = (self.spheres.tether / self.spheres.mass)[:, None]  # 1/s2
             pull = pull - stiff * (self.state.position - self.spheres.start)
-        return np.asarray(pull * self.state.launched[:, None])
+        return np.asarray(pull * flying[:, None])
 
     def take(self, fields: Fields) -> None:
         """Set force [N], torque [N m] and heat [W] on each sphere; they are 0 if absent."""
@@ -177,7 +194,7 @@ class ParticleSpheres(Component):
                 state.position[min(wrong, len(state.position) - 1)],
             )
         if self.impacts is not None:
-            self.impacts.resolve(dt, self._acceleration())
+            self.impacts.resolve(dt, self._acceleration(state.launched))
 
     def check(self) -> None:
         """Refuse a sphere whose rotation or temperature is not finite."""
@@ -203,7 +220,7 @@ class ParticleSpheres(Component):
             "launched": state.launched.astype(float),
         }
         if "spheres.acceleration" in wanted:
-            values["acceleration"] = self._free_acceleration()
+            values["acceleration"] = self._free_acceleration(state.launched)
         # Both ports have some fields; all ranks go in one order.
         names = {key.partition(".")[2]: key for key in sorted(wanted)}
         rows = self.rows.give([values[name] for name in names])
