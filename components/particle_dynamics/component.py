@@ -9,7 +9,7 @@ from quintet.components.particle_dynamics.build import build, initial_state
 from quintet.components.particle_dynamics.diagnostics import CHECKED, Losses
 from quintet.components.particle_dynamics.energies import EnergyBudget
 from quintet.components.particle_dynamics.features import bathed, model, rows_of, wall_of
-from quintet.components.particle_dynamics.integrators import LIMIT
+from quintet.components.particle_dynamics.integrators import LIMIT, damped_step
 from quintet.components.particle_dynamics.params import ParticleLatticeParams
 from quintet.components.particle_dynamics.ports import SHOWS
 from quintet.components.particle_dynamics.state import TIME, State
@@ -56,7 +56,10 @@ class ParticleLattice(Component):
         self.wall = wall_of(self.bathed, baths, self.rows.bathed)
         stiffest = self.bathed.tether.max(initial=0.0)
         frequency = math.sqrt(built.frequency**2 + stiffest / self.lattice.mass)  # rad/s
-        self.substep = params.courant * (LIMIT[params.integrator] / frequency)  # s
+        vibrating = params.courant * (LIMIT[params.integrator] / frequency)  # s
+        mass, count = self.lattice.mass, self.lattice.count
+        damped = damped_step(params.damping, mass, count, params.integrator)
+        self.substep = min(vibrating, damped)  # s
         self.losses, free = Losses(), self.lattice.count - len(built.frozen)
         self.budget = EnergyBudget(params, self.rows, self.bathed, frequency, free)
 

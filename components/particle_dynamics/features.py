@@ -26,6 +26,7 @@ def model(params: ParticleLatticeParams, built: Built, bathed: Bathed) -> Model:
     """All constants of the equations of motion but the pair force."""
     damping, start, drive = params.damping, built.start, params.drive
     driven = NO_DRIVE if drive is None else _driven(start, params.lattice, drive)
+    _require_free(params, start, driven, built.frozen)
     held = {*built.frozen.tolist(), *({driven.first, driven.second} - {-1})}
     if shared := held & set(bathed.point.tolist()):
         raise SceneError(
@@ -46,6 +47,21 @@ def model(params: ParticleLatticeParams, built: Built, bathed: Bathed) -> Model:
         stages=np.array(STAGES[params.integrator]),
         literal_damping=damping.coefficient if damping is not None and is_literal else 0.0,
     )
+
+
+def _require_free(
+    params: ParticleLatticeParams, start: Array, driven: Driven, frozen: Whole
+) -> None:
+    """Refuse a drive that would move frozen points."""
+    shares = ((driven.first, driven.share_first), (driven.second, driven.share_second))
+    moved = [point for point, share in shares if share != 0.0]
+    if len(wrong := np.intersect1d(moved, frozen)):
+        assert params.drive is not None
+        raise SceneError(
+            f"drive: points that it moves must not be frozen; found "
+            f"{start[int(wrong[0])].tolist()} m, which mode {params.drive.mode} moves. Take it out "
+            "of frozen, or another mode."
+        )
 
 
 def _driven(start: Array, lattice: Lattice, drive: Drive) -> Driven:

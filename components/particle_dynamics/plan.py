@@ -2,7 +2,7 @@
 
 import math
 
-from quintet.components.particle_dynamics.integrators import LIMIT
+from quintet.components.particle_dynamics.integrators import LIMIT, damped_step
 from quintet.components.particle_dynamics.params import ParticleLatticeParams
 from quintet.components.particle_dynamics.potential import (
     force_table,
@@ -31,6 +31,7 @@ def plan(params: ParticleLatticeParams) -> Plan:
         frequency = highest_frequency(law, lattice.spacing, lattice.mass)
     tether = max((bath.tether for bath in params.baths), default=0.0)
     frequency = math.sqrt(frequency**2 + tether / lattice.mass)
-    share = params.courant * params.substeps
-    step = share * LIMIT[params.integrator] / frequency if frequency > 0.0 else math.inf
-    return Plan(lattice.count, step, RATE / params.substeps, BYTES)
+    step = damped_step(params.damping, lattice.mass, lattice.count, params.integrator)
+    if frequency > 0.0:
+        step = min(step, params.courant * LIMIT[params.integrator] / frequency)
+    return Plan(lattice.count, params.substeps * step, RATE / params.substeps, BYTES)

@@ -308,6 +308,33 @@ def test_what_does_not_go_together_is_refused(settings, reason):
         lattice(**settings)
 
 
+@pytest.mark.parametrize("kind", ["cut-off", "all"])
+def test_strong_damping_limits_the_step(kind):
+    strong = Damping(coefficient=4.0 * MASS * 2.0 * math.pi * TOP, range=kind)
+    solver = lattice((3, 3, 3), damping=strong, temperature=1e-3 * UNIT)
+    vibrating = 0.03 * LIMIT["velocity_verlet"] / solver.built.frequency
+    assert solver.stable_dt() < 0.3 * vibrating
+    first = solver.totals().kinetic
+    for _ in range(100):
+        solver.step(solver.stable_dt())
+    # Without rotation all motion is damped; the spin stays.
+    assert solver.totals().kinetic < 0.3 * first
+    with pytest.raises(StepError):
+        for _ in range(100):
+            solver.step(vibrating)
+
+
+def test_a_drive_of_a_frozen_point_is_refused():
+    with pytest.raises(SceneError, match=r"found \[0.0, 0.01, 0.01\] m, which mode relative moves"):
+        bar_with_frozen_drive("relative")
+    bar_with_frozen_drive("partner")  # which leaves it where it is
+
+
+def bar_with_frozen_drive(mode):
+    drive = Drive(point=(0.0, A, A), partner="-y", frequency=50.0, amplitude=0.05 * A, mode=mode)
+    return lattice(frozen=((0.0, A, A),), drive=drive)
+
+
 def test_boxes_without_points_are_refused():
     empty = Bath(lowest=(1.0, 1.0, 1.0), highest=(2.0, 2.0, 2.0), temperature=1.0, rate=1.0)
     with pytest.raises(SceneError, match="holds none"):
