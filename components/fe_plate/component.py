@@ -9,7 +9,14 @@ from quintet.components.fe_plate import MANIFEST
 from quintet.components.fe_plate.added_mass import AddedMass
 from quintet.components.fe_plate.build import Structure, initial_state, structure
 from quintet.components.fe_plate.contact_surface import OpeningSurface, areas, described_layer
-from quintet.components.fe_plate.diagnostics import check, inside_out, motion, not_finite, totals
+from quintet.components.fe_plate.diagnostics import (
+    check,
+    inside_out,
+    motion,
+    not_finite,
+    require_before_walls,
+    totals,
+)
 from quintet.components.fe_plate.features import Loads, Pressures, Stepped, ranks, stepping_kernel
 from quintet.components.fe_plate.gauges import measured, readings
 from quintet.components.fe_plate.judgement import EVERY, Judge
@@ -141,6 +148,10 @@ class FePlate(Component):
             self.accumulated.brought += self.added_mass.replace(
                 added, self.model, self.state, self.all_ranks
             )
+
+    def prime(self, fields: Fields) -> None:
+        """Refuse nodes that begin behind rigid walls."""
+        require_before_walls(self.built, self.state, self.all_ranks)
 
     def stable_dt(self) -> float:
         """Return a share of the proven bound."""
@@ -277,6 +288,8 @@ class FePlate(Component):
         pushed = {key: first_rows(state[key], self.loaded.size) for key in ("loads", "half_kick")}
         super().begin_from({**state, **pushed})
         self.accumulated.time = 0.0
+        self.accumulated.steps = 0  # the first step takes down energies to judge by
+        self.judge.most[:] = 0.0
 
     def totals(self) -> Totals:
         """Mass, momentum and energies, with added mass.

@@ -7,8 +7,10 @@ from quintet.components.fe_plate.ranks.method import Ranks
 from quintet.components.fe_plate.state import DAMAGE, ENERGY, Array, State, Whole, at_points
 from quintet.components.shared.finite_items import require_finite_items
 from quintet.interfaces.component import Totals
-from quintet.interfaces.errors import StepError
+from quintet.interfaces.errors import SceneError, StepError
 from quintet.interfaces.sums import finite
+
+BEHIND = 1e-6  # of the least edge of elements, by which nodes may begin behind a rigid wall
 
 
 def motion(
@@ -60,6 +62,21 @@ def totals(
         work=sum(work),
         dissipated=0.0,  # plastic work is internal, damping is work
     )
+
+
+def require_before_walls(built: Structure, state: State, ranks: Ranks) -> None:
+    """Refuse nodes that begin behind a rigid wall, which would throw them out in one step."""
+    walls, position = built.model.walls, state.position[: built.model.moving]
+    if not len(walls):
+        return
+    heights = position @ walls[:, :3].T - walls[:, 3]  # (n, w) m
+    lowest = ranks.least(heights.min(axis=0))
+    wall = int(np.argmin(lowest))
+    if lowest[wall] < -BEHIND * built.shortest:
+        raise SceneError(
+            f"rigid_walls.{wall}: no node may be behind it as the run begins; found one "
+            f"{-lowest[wall]:.3g} m behind. Move the wall or the parts, or turn its normal."
+        )
 
 
 def inside_out(built: Structure, place: int, ratio: float, time: float, ranks: Ranks) -> StepError:

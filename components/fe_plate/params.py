@@ -13,6 +13,7 @@ from quintet.interfaces.params import (
     parameters,
 )
 
+STIFFEST_HOURGLASS = 2.0  # whose frequency is the bound that the step keeps to
 Erosion = Literal["plastic_strain", "damage", "spall"]
 
 
@@ -144,7 +145,7 @@ class FePlateParams:
     courant : 1
         Share of the greatest step that is proven stable; that of a mesh may be twice as great.
     hourglass : 1
-        Stiffness of the stabilisation of one point, as a share of the element's own.
+        Stiffness of the stabilisation of one point, as a share of the element's own; at most 2.
     viscosity_linear, viscosity_quadratic : 1
         C₁ and C₀ of the bulk viscosity ρ l (C₀² l D² - C₁ c D), in compression.
     mass_damping : 1/s
@@ -178,3 +179,20 @@ class FePlateParams:
         if self.dimensions == 2:
             for number, part in enumerate(self.parts):
                 part.require_planar(f"parts.{number}")
+            self._require_planar_loads()
+        if self.hourglass > STIFFEST_HOURGLASS:
+            raise ValueError(
+                f"hourglass must be at most {STIFFEST_HOURGLASS:g}, for stiffer patterns vibrate "
+                f"faster than the step allows; found {self.hourglass:g}. Lower it (0.05 is usual)."
+            )
+
+    def _require_planar_loads(self) -> None:
+        """Refuse what would push nodes out of the plane, along which they do not move."""
+        along = {"gravity": self.gravity}
+        along |= {f"rigid_walls.{k}.normal": wall.normal for k, wall in enumerate(self.rigid_walls)}
+        for name, vector in along.items():
+            if vector[1] != 0.0:
+                raise ValueError(
+                    f"{name} must be along x and z in two dimensions; found {list(vector)}. Set "
+                    "its y to 0, or dimensions = 3."
+                )

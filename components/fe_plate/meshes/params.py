@@ -105,6 +105,15 @@ class MeshedPart(BoxKeys, CylinderKeys, MeshKeys):
                 f"parts: parts is for a mesh from a file; found {list(self.parts)} with a "
                 f"{self.shape}. Leave it out."
             )
+        for key, is_given, kind in (
+            ("quarter", self.quarter, "cylinder"),
+            ("coincident_nodes", self.coincident_nodes != "refuse", "mesh"),
+            ("time_scale", getattr(self, "time_scale", 1.0) != 1.0, "mesh"),
+        ):
+            if is_given and self.shape != kind:
+                raise ValueError(
+                    f"parts: {key} is for a {kind}; found a {self.shape}. Leave it out."
+                )
         if isinstance(shape, Box) and self.count == 0:
             raise ValueError(
                 "parts: cutout must leave an element; it leaves none. Make it smaller."
@@ -274,6 +283,11 @@ class Part(MeshedPart):
             raise ValueError(
                 f"{where}: in two dimensions there are no tetrahedra; found tetrahedra = true. "
                 "Leave it out, or set dimensions = 3."
+            )
+        if self.velocity is not None and self.velocity[1] != 0.0:
+            raise ValueError(
+                f"{where}: in two dimensions a velocity must be along x and z; found "
+                f"{self.velocity[1]:g} m/s along y. Set it to 0, or dimensions = 3."
             )
         if self.cutout is not None:
             raise ValueError(
