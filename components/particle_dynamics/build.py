@@ -8,7 +8,7 @@ import numpy as np
 from quintet.components.particle_dynamics.coefficients import ForceTable, SevenRoots
 from quintet.components.particle_dynamics.kernels.stiffness import highest_eigenvalue, tridiagonal
 from quintet.components.particle_dynamics.laws import force as pair_force
-from quintet.components.particle_dynamics.neighbours import pairs_within
+from quintet.components.particle_dynamics.neighbours import SKIN, pairs_within
 from quintet.components.particle_dynamics.params import Lattice, ParticleLatticeParams
 from quintet.components.particle_dynamics.potential import (
     force_table,
@@ -63,6 +63,7 @@ def build(params: ParticleLatticeParams) -> Built:
     period = _period(lattice)
     frozen = np.unique(nearest_rows(start, params.frozen))
     law, frequency = _law(params, start, period, frozen)
+    _require_long_sides(lattice, law)
     bonds = _bonds(start, 1.1 * lattice.spacing, np.array(lattice.lowest), period)
     return Built(start, period, law, frequency, bonds, frozen)
 
@@ -101,6 +102,19 @@ def _period(lattice: Lattice) -> Array | None:
     sides = zip("xyz", lattice.cells, strict=True)
     length = [n * lattice.spacing if axis in lattice.periodic else 0.0 for axis, n in sides]
     return np.array([*length, *(1.0 / side if side else 0.0 for side in length)])
+
+
+def _require_long_sides(lattice: Lattice, law: Law) -> None:
+    """Refuse periodic sides so short that a point may meet another and its image."""
+    reach = (1.0 + SKIN) * math.sqrt(law.cutoff2)  # m
+    for axis, count in zip("xyz", lattice.cells, strict=True):
+        length = count * lattice.spacing  # m
+        if axis in lattice.periodic and length < 2.0 * reach:
+            raise SceneError(
+                f"lattice: a periodic axis must be at least {2.0 * reach:.4g} m long, "
+                f"{2 + 2 * SKIN:g} times the distance at which the pair force ends; found "
+                f"{axis} of {length:.4g} m. Make it longer, or the force shorter."
+            )
 
 
 def _bonds(start: Array, reach: float, lowest: Array, period: Array | None) -> Whole:

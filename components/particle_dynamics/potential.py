@@ -73,6 +73,14 @@ def stiffness(law: SevenRoots | ForceTable, r: float) -> float:
     return float(law.strength * law.per_metre * curvature)
 
 
+def tension(law: SevenRoots | ForceTable, r: float) -> float:
+    """F/r [N/m] of a pair at a distance [m] of the lattice, where seven roots have no force."""
+    if not isinstance(law, ForceTable):
+        return 0.0
+    places = law.first + np.arange(len(law.force)) / law.per_metre
+    return float(np.interp(r, places, law.force)) / r
+
+
 def highest_frequency(law: SevenRoots | ForceTable, spacing: float, mass: float) -> float:
     """Highest angular frequency [rad/s] of the infinite lattice, over wave vectors in steps of π/6.
 
@@ -84,9 +92,12 @@ def highest_frequency(law: SevenRoots | ForceTable, spacing: float, mass: float)
     length = np.linalg.norm(bonds, axis=1)
     near = (length > 0.0) & (length * spacing < math.sqrt(law.cutoff2) * (1.0 - 1e-12))
     bonds, length = bonds[near], length[near]
-    along = np.array([stiffness(law, spacing * shell) for shell in length.tolist()])
+    lengths = (spacing * length).tolist()
+    along = np.array([stiffness(law, r) for r in lengths])
+    across = np.array([tension(law, r) for r in lengths])
     direction = bonds / length[:, None]
-    dyads = along[:, None, None] * direction[:, :, None] * direction[:, None, :]
+    dyads = (along - across)[:, None, None] * direction[:, :, None] * direction[:, None, :]
+    dyads += across[:, None, None] * np.eye(3)
     wave = np.pi / 6.0 * np.arange(7)
     highest = 0.0
     for vector in np.stack(np.meshgrid(wave, wave, wave, indexing="ij"), -1).reshape(-1, 3):

@@ -153,6 +153,30 @@ def test_the_infinite_lattice_has_the_highest_frequency_of_all():
     assert periodic.built.frequency == pytest.approx(bound, rel=1e-6)
 
 
+def springs(tmp_path, end):
+    """File of springs that pull at rest, of 200 N/m at a distance A, and end at some spacings."""
+    rows = np.stack([A * np.array([0.5, 1.1, end]), [-0.21, 0.15, 0.0]], -1)
+    np.savetxt(tmp_path / "springs.csv", rows, delimiter=",", fmt="%.12e")
+    return str(tmp_path / "springs.csv")
+
+
+def test_the_highest_frequency_knows_forces_of_a_table_between_points_at_rest(tmp_path):
+    file = springs(tmp_path, 1.3)
+    periodic = {"cells": (6, 6, 6), "periodic": ("x", "y", "z")}
+    small = bar(lattice=periodic, seven_roots=None, force_table=file)
+    bound = highest_frequency(force_table(file), A, 1e-3)
+    assert small.built.frequency == pytest.approx(bound, rel=1e-6)
+    # All neighbours move against a point: 4 F'(a) + 8 F(a)/a.
+    assert bound == pytest.approx(math.sqrt((4.0 * 200.0 + 8.0 * 0.09 / A) / 1e-3), rel=1e-3)
+
+
+def test_periodic_sides_shorter_than_twice_the_reach_of_a_table_are_refused(tmp_path):
+    file = springs(tmp_path, 2.8)
+    periodic = {"cells": (6, 8, 8), "periodic": ("x", "y")}
+    with pytest.raises(SceneError, match=r"at least 0.01848 m long, 2.2 times .* found x of 0.018"):
+        bar(lattice=periodic, seven_roots=None, force_table=file)
+
+
 @pytest.mark.parametrize(
     ("settings", "reason"),
     [
