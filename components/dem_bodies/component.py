@@ -104,7 +104,9 @@ class DemBodies(Component):
         """Return a fraction of a contact's duration; while nothing can touch, a longer step."""
         self._begin()
         free = self.limit.stable(self.state, self.lists)
-        return min(free, self.faces.stable_step()) if self.faces else free
+        stable = min(free, self.faces.stable_step()) if self.faces else free
+        time = self.accumulated.time
+        return self.timetable.longest(time, stable) if self.timetable else stable
 
     def take(self, fields: Fields) -> None:
         """Set force [N] and torque [N m] on each body; 0 where none is given."""

@@ -1,5 +1,6 @@
 """Optional physics as objects: pairs of balls, and the limit of the step."""
 
+import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
@@ -12,7 +13,8 @@ from quintet.components.dem_bodies.contact.step_limit import FixedStep, StepLimi
 from quintet.components.dem_bodies.params import DemBodiesParams
 from quintet.components.dem_bodies.ranks.one import OneRank
 from quintet.components.dem_bodies.shapes.copies import Bodies
-from quintet.components.dem_bodies.shapes.solid import Solid, contact_length
+from quintet.components.dem_bodies.shapes.rigid_body import RigidBody
+from quintet.components.dem_bodies.shapes.solid import Solid, contact_length, half_thickness
 from quintet.components.dem_bodies.state import Model, State
 from quintet.components.dem_bodies.timetable import Timetable, has_changes
 from quintet.interfaces.component import Array, Fields, Keys, Resources
@@ -76,7 +78,16 @@ def step_limit(
         damping=float(model.material_pairs[:, :, 2].max()),
         steps_per_contact=params.steps_per_contact,
         longest=params.longest_step,
+        # Planes hold all that is below them, however deep.
+        room=min(map(room, bodies.kinds, solids)) if len(bodies) > 1 else math.inf,
     )
+
+
+def room(body: RigidBody, solid: Solid) -> float:
+    """Contact radius [m] of a body, or half its thickness if that is less."""
+    has_faces = body.size is not None or body.corners is not None
+    radius = contact_length(body, solid)
+    return min(radius, half_thickness(body)) if has_faces else radius
 
 
 def partner_faces(

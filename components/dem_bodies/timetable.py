@@ -1,8 +1,8 @@
 """Planes that vanish and bodies that are released at a time of the run, as gates and supports do.
 
-A plane or lock is as it was until the first step that begins at its time or later; one of its steps
-is a fraction of a contact's duration. The elastic energy of contacts with a plane that vanishes is
-lost; it counts as dissipated.
+A plane or lock is as it was until the first step that begins at its time or later. Steps end at
+these times, to a thousandth of their length. The elastic energy of contacts with a plane that
+vanishes is lost; it counts as dissipated.
 """
 
 import numpy as np
@@ -15,6 +15,7 @@ from quintet.components.dem_bodies.state import GONE, Model, State, Whole
 from quintet.interfaces.component import Array, Fields
 
 ROUNDING = 1e-6  # of a step, by which it may begin too early
+SHORTEST = 1e-3  # of a stable step: none is made shorter to end at the time of a change
 
 
 class Timetable:
@@ -54,6 +55,12 @@ class Timetable:
         self._write(state)
         for row in state.row[released].tolist():
             write_free_rotation(self.model, state, row)
+
+    def longest(self, time: float, stable: float) -> float:
+        """Longest step [s] at a time [s] that ends at the next change, of at most a stable one."""
+        left = self.times[~self.done] - time
+        coming = left[left > ROUNDING * stable]
+        return min(stable, max(float(coming.min(initial=np.inf)), SHORTEST * stable))
 
     def _write(self, state: State) -> None:
         """Write planes and locks as they are now into the model."""

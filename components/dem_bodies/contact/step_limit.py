@@ -43,6 +43,7 @@ class StepLimit:
     damping: float  # ζ of the most damped pair of materials
     steps_per_contact: int
     longest: float  # s
+    room: float  # m, least contact radius or half thickness: no two approach by more in a step
 
     def stable(self, state: State, lists: ContactLists) -> float:
         """Return the step [s] that the last step's contacts, gaps and speeds allow."""
@@ -60,6 +61,9 @@ class StepLimit:
             longest = min(longest, turning_step(model, state))
         speed = report[LARGEST_SPEED] + report[LARGEST_ACCELERATION] * longest
         free = gap / (2.0 * speed) if speed > 0.0 else longest
+        # Bodies far faster than the expected impact would pass through each other unseen.
+        fastest = report[LARGEST_SPEED] + report[LARGEST_ACCELERATION] * contact
+        contact = min(contact, self.room / (2.0 * fastest)) if fastest > 0.0 else contact
         return float(min(longest, max(free, contact)))
 
 

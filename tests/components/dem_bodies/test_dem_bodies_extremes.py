@@ -223,3 +223,11 @@ def test_a_body_that_falls_out_of_the_scene_falls_on():
     assert outputs_of(ball)["motion.position"][0, 2] == pytest.approx(
         -0.5 * 9.81 * 2.0**2, rel=1e-9
     )
+
+
+def test_bodies_far_faster_than_the_expected_impact_do_not_pass_through_each_other():
+    small = (0.02, 0.02, 0.02)
+    bodies = [box((0.0, 0.0, 0.0), small, velocity=[1e4, 0.0, 0.0]), box((0.303, 0.0, 0.0), small)]
+    solver = build(bodies, gravity=NOTHING)
+    with pytest.raises(StepError, match="overlap of a contact must be at most"):
+        run(solver, 1e-4)

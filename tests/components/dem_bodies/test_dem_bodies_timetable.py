@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from dem_scenes import FLOOR, box, build, mistakes, sphere
+from dem_scenes import FLOOR, box, build, mistakes, run, sphere
 
 LOCKED = ["x", "y", "z", "rotation_x", "rotation_y", "rotation_z"]
 GATE = {**FLOOR, "until": 0.05}
@@ -44,6 +44,12 @@ def test_a_held_body_is_released_at_its_time(shape):
     assert height(advance(solver, 0.05)) == 1.0
     advance(solver, 0.1)
     assert velocity(solver) == pytest.approx(-9.81 * 0.05, rel=1e-9)
+
+
+def test_a_step_ends_at_the_time_of_a_release():
+    solver = build([box((0.0, 0.0, 1.0), locked=LOCKED, released_at=0.0123456)])
+    run(solver, 0.05)
+    assert velocity(solver) == pytest.approx(-9.81 * (0.05 - 0.0123456), rel=5e-5)
 
 
 def test_a_body_that_turned_evenly_keeps_its_angular_momentum_when_released():
