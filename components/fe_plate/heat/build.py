@@ -84,8 +84,15 @@ def _sources(params: FeHeatParams, grid: Mesh) -> Array:
 def initial_state(params: FeHeatParams, model: Model, surface: int) -> State:
     """Temperatures of the parts at the start, and fixed ones."""
     temperature = np.array([part.temperature for part in params.parts])[model.part]
+    hold(params, model, temperature)
+    judged = np.zeros((len(params.parts), 2))
+    start = temperature.copy()
+    held = np.zeros(len(params.fixed_temperatures))
+    return State(temperature, start, np.zeros(surface), held, np.zeros(1), judged)
+
+
+def hold(params: FeHeatParams, model: Model, temperature: Array) -> None:
+    """Write the fixed ones into the temperatures (n,) K."""
     held = np.array([fixed.temperature for fixed in params.fixed_temperatures], float)
     is_held = model.holder >= 0
     temperature[is_held] = held[model.holder[is_held]]
-    judged = np.zeros((len(params.parts), 2))
-    return State(temperature, np.zeros(surface), np.zeros(len(held)), np.zeros(1), judged)

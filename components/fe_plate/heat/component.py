@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from quintet.components.fe_plate.heat import MANIFEST, diagnostics, features
-from quintet.components.fe_plate.heat.build import build, initial_state
+from quintet.components.fe_plate.heat.build import build, hold, initial_state
 from quintet.components.fe_plate.heat.kernels import conduct, solve
 from quintet.components.fe_plate.heat.params import FeHeatParams
 from quintet.components.fe_plate.heat.ports import SHOWS
@@ -49,8 +49,7 @@ class FeHeat(Component):
         self.gauges = nearest_rows(mesh.node, params.node_gauges)
         self.state = initial_state(params, self.model, len(self.surface))
         self.times = diagnostics.transient_times(params, self.model)  # s
-        start = self.state.temperature.copy()
-        self.conduction = features.conduction(params, self.model, start, self.times)
+        self.conduction = features.conduction(params, self.model, self.times)
         self.is_compiled = False
 
     def describe(self) -> Fields:
@@ -124,6 +123,17 @@ class FeHeat(Component):
         """Restore a saved state, bit for bit."""
         for name, array in self.state._asdict().items():
             array[:] = state[name]
+
+    def begin_from(self, state: Fields) -> None:
+        """Begin from the state of another run, with the fixed temperatures of this one.
+
+        Transients are judged from now on.
+        """
+        is_same = len(state["held"]) == len(self.state.held)
+        super().begin_from(state if is_same else {**state, "held": self.state.held})
+        hold(self.params, self.model, self.state.temperature)
+        self.state.start[:] = self.state.temperature
+        self.state.judged[:] = 0.0
 
     def totals(self) -> Totals:
         """Mass, heat above 0 K, and heat of sources and held nodes; steady parts store none."""

@@ -69,21 +69,19 @@ class TransientConduction(Conduction):
     Parameters
     ----------
     model, tolerance
-    start : (n,) K
-        Temperatures at the start.
     times : (p,) s
         In which heat crosses each part.
     """
 
-    def __init__(self, model: Model, tolerance: float, start: Array, times: Array) -> None:
+    def __init__(self, model: Model, tolerance: float, times: Array) -> None:
         super().__init__(model, tolerance)
-        self.start, self.times = start, times
+        self.times = times
 
     def advance(self, state: State, dt: float, load: Array) -> Array:
         """Step by Alexander's scheme, and judge whether the step resolves the transient."""
         before = state.temperature.copy()
         gained = self._stepped(state.temperature, dt, load)
-        note(state.judged, self.start, before, state.temperature, dt, self.model.part, self.times)
+        note(state.judged, state.start, before, state.temperature, dt, self.model.part, self.times)
         return gained
 
     def _stepped(self, temperature: Array, dt: float, load: Array) -> Array:

@@ -10,8 +10,8 @@ from quintet.components.fe_plate.heat.state import Model
 from quintet.components.fe_plate.meshes.arrays import Array
 
 
-def conduction(params: FeHeatParams, model: Model, start: Array, times: Array) -> Conduction:
-    """How temperatures are stepped from those at the start (n,) K; times (p,) s of the parts."""
+def conduction(params: FeHeatParams, model: Model, times: Array) -> Conduction:
+    """How temperatures are stepped; in times (p,) s heat crosses the parts."""
     if params.steady:
         return SteadyConduction(model, params.tolerance)
-    return TransientConduction(model, params.tolerance, start, times)
+    return TransientConduction(model, params.tolerance, times)

@@ -32,6 +32,7 @@ class State(NamedTuple):
     """What changes."""
 
     temperature: Array  # (n,) K
+    start: Array  # (n,) K, as the run began
     heat: Array  # (nodes of the surface,) W, of partners
     held: Array  # (h,) W, mean flow of the last step from what holds nodes into the body
     outside: Array  # (1,) J, heat of fluxes and of what holds nodes since the start

@@ -284,3 +284,16 @@ def test_steps_that_pass_over_the_transient_are_warned_of(share, is_warned):
     resumed = FeHeat(body.params)
     resumed.load(body.save())
     assert resumed.warnings() == body.warnings()
+
+
+def test_a_run_from_the_state_of_another_has_its_own_fixed_temperatures():
+    size, elements = (0.04, 0.01, 0.01), (4, 1, 1)
+    first = block(size, elements, 300.0, fixed_temperatures=(face(0.0, size, 400.0),))
+    first.step(1e-5)
+    ends = face(0.0, size, 500.0), face(0.04, size, 200.0)
+    second = block(size, elements, 0.0, fixed_temperatures=ends)
+    second.begin_from(first.save())
+    assert not second.state.judged.any()
+    second.step(1e9)
+    temperature, x = second.state.temperature, second.model.mesh.node[:, 0]
+    np.testing.assert_allclose(temperature, 500.0 - 300.0 * x / 0.04, rtol=1e-6)
