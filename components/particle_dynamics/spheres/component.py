@@ -239,6 +239,11 @@ class ParticleSpheres(Component):
         self.rows.load(state)
         self.heat_flow = float(state["heat"].sum())
 
+    def begin_from(self, state: Fields) -> None:
+        """Begin from the state of another run; launches that are to come count from now on."""
+        super().begin_from(state)
+        self.state.sums[TIME] = self.state.sums[DEEPEST] = 0.0
+
     def warnings(self) -> dict[str, str]:
         """Warn of spheres that were pressed into each other, or into walls."""
         return warnings(self.state)

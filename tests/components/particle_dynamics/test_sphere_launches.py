@@ -55,6 +55,18 @@ def test_a_launch_is_work_from_outside():
     assert after.work == pytest.approx(given, rel=1e-12)
 
 
+def test_launches_count_from_the_begin_of_a_run_from_another_state():
+    first = solver_of(sphere(**{**FIRST, "launch": 0.3}))
+    first.step(0.25)
+    solver = solver_of(sphere(**FIRST))
+    solver.begin_from(first.save())
+    solver.step(0.5 * LAUNCH)
+    assert not solver.state.launched.any()
+    solver.step(LAUNCH)
+    place = solver.give({"motion.position"})["motion.position"][0, 0]
+    assert place == pytest.approx(100.0 * 0.5 * LAUNCH, rel=1e-12)
+
+
 def test_a_plan_has_the_step_that_tethers_allow():
     tethered = sphere(centre=(0.0, 0.0, 0.0), tether=50.0, parcel=3.0)
     params = ParticleSpheresParams(spheres=(tethered,), collisions=False)
