@@ -177,13 +177,18 @@ def initial_state(params: MeshlessGasParams, cloud: Cloud, team: Team) -> State:
     else:
         assert params.initial is not None
         primitive = np.tile(params.initial.primitive(params.gas), (len(positions), 1))
-        for zone in params.zones:
+        for number, zone in enumerate(params.zones):
             held = (positions >= zone.lowest) & (positions <= zone.highest)
             if params.planar:
                 held[:, 1] = True
-            primitive[held.all(axis=1)] = zone.state.primitive(params.gas)
-    if params.planar:
-        primitive[:, 2] = 0.0
+            rows = held.all(axis=1)
+            if not rows.any():
+                raise SceneError(
+                    f"zones.{number}: its box must hold a node; it holds none. Correct lowest "
+                    f"{list(zone.lowest)} m and highest {list(zone.highest)} m, or take a smaller "
+                    "spacing."
+                )
+            primitive[rows] = zone.state.primitive(params.gas)
     conservative = np.empty_like(primitive)
     write_conservative(primitive, params.gas.gamma, conservative)
     begun = conserved(conservative, cloud.volumes, team)

@@ -14,9 +14,10 @@ from quintet.components.meshless_gas.boundaries import (
     wrong_round_layers,
 )
 from quintet.components.meshless_gas.clouds.params import BoxCloud, PlateCloud, SphereCloud
+from quintet.components.meshless_gas.directions import off_plane, through_walls
 from quintet.components.meshless_gas.moving_bodies import Moving
 from quintet.components.meshless_gas.particle_coupling import PointParticles
-from quintet.components.meshless_gas.readings import Front, Steady
+from quintet.components.meshless_gas.readings import Front, Steady, wrong_places
 from quintet.components.meshless_gas.starts import Riemann, Vortex, Zone
 from quintet.interfaces.params import NotNegative, Positive, Vector, parameters
 
@@ -133,6 +134,11 @@ class MeshlessGasParams:
                 "a sphere in 2 dimensions must be axisymmetric. Say axisymmetric = true.",
             ),
             (
+                self.neighbours is not None and self.box is None,
+                "neighbours is of the nodes of a box: layers know theirs, by line_stencils. Leave "
+                "it out.",
+            ),
+            (
                 self.vortex is not None and self.box is None,
                 "a vortex drifts through a periodic box. Give a box.",
             ),
@@ -192,7 +198,10 @@ class MeshlessGasParams:
         no_slip = [n for n, boundary in self.boundaries.items() if boundary.kind in NO_SLIP]
         if no_slip and not self.viscous:
             return [f"boundaries.{no_slip[0]} holds the gas by friction. Say viscous = true."]
-        return []
+        layered = {"wall": "z" if self.sphere is None else "xyz", "ahead": "z"}
+        return through_walls(
+            self.boundaries, layered if self.box is None else {n: n[0] for n in self.boundaries}
+        )
 
     def _wrong_layers(self) -> list[str]:
         """What does not fit among the boundaries of a cloud in layers."""
@@ -207,20 +216,45 @@ class MeshlessGasParams:
         return self.sphere.wrong(far.velocity, self.axisymmetric)
 
     def _wrong_states(self) -> list[str]:
-        """What does not fit among the states at the start."""
+        """What does not fit among the states at the start, and what would leave the plane."""
         mistakes = []
         if (self.initial is None) == (self.riemann is None):
             mistakes.append("the gas begins with initial or riemann, one of them. Correct it.")
-        if self.riemann is not None and (self.vortex or self.zones or self.moving):
-            mistakes.append("riemann is for a tube alone: leave out vortex, zones and moving.")
+        taken = [name for name in ("vortex", "zones", "moving") if getattr(self, name)]
+        if self.riemann is not None and (taken or self.box is None):
+            mistakes.append(
+                "riemann is for a tube alone: it needs a box, and leave out vortex, zones and "
+                "moving."
+            )
         if self.local_steps and (self.riemann is not None or self.vortex is not None):
             mistakes.append(
                 "local_steps is for flows that become steady: with riemann or vortex its times "
                 "mean nothing. Leave it out."
             )
-        if self.vortex is not None and self.initial is not None:
+        if self.riemann is not None and self.box is not None:
+            mistakes += self.riemann.wrong(self.box.lowest[0], self.box.highest[0])
+        if self.vortex is not None:
+            mistakes += self._wrong_vortex(self.vortex)
+        if self.planar:
+            starts = {"initial": self.initial}
+            starts |= {f"zones.{k}.state": zone.state for k, zone in enumerate(self.zones)}
+            mistakes += off_plane(starts, self.boundaries)
+        return mistakes
+
+    def _wrong_vortex(self, vortex: Vortex) -> list[str]:
+        """What does not fit between a vortex and the gas through which it drifts."""
+        mistakes = []
+        walls = {n: b.kind for n, b in self.boundaries.items() if b.kind != "periodic"}
+        if self.zones or self.moving is not None or walls:
+            beside = ["zones"] * bool(self.zones) + ["moving"] * (self.moving is not None)
+            beside += [f"boundaries.{name} of kind {kind}" for name, kind in walls.items()]
+            mistakes.append(
+                "a vortex drifts through a periodic box, in the initial state alone; found "
+                f"{' and '.join(beside)}. Leave out what is there beside it."
+            )
+        if self.initial is not None:
             density, *_, pressure = self.initial.primitive(self.gas)
-            mistakes += self.vortex.wrong(self.gas.gamma, pressure / density)
+            mistakes += vortex.wrong(self.gas.gamma, pressure / density)
         return mistakes
 
     def _wrong_faces(self) -> list[str]:
@@ -231,18 +265,8 @@ class MeshlessGasParams:
         return unknown_boundaries(self.boundaries, names) + self.box.wrong(kinds)
 
     def _wrong_places(self) -> list[str]:
-        """Which places of probes and ends of fronts lie outside the nodes."""
-        places = [(f"probes, item {k}", place) for k, place in enumerate(self.probes)]
-        for k, front in enumerate(self.fronts):
-            places += [
-                (f"fronts, item {k}: begin", front.begin),
-                (f"fronts, item {k}: end", front.end),
-            ]
-        return [
-            f"{name}: it must lie among the nodes; found {list(place)} m. Move it."
-            for name, place in places
-            if not self.cloud.holds(place, self.dimensions)
-        ]
+        """Which places of probes and ends of fronts lie outside the nodes, or off their plane."""
+        return wrong_places(self.probes, self.fronts, self.cloud.holds, self.dimensions)
 
     def kind_of(self, face: str) -> str:
         """Kind of the boundary at a face of the box."""

@@ -1,5 +1,6 @@
 """What a scene says about what is read of a gas: when it has settled, and where fronts are."""
 
+from collections.abc import Callable, Sequence
 from typing import Annotated, Literal
 
 from pydantic import Field
@@ -51,3 +52,32 @@ class Front:
     def __post_init__(self) -> None:
         if self.begin == self.end:
             raise ValueError("fronts: a line must end elsewhere than it begins. Correct it.")
+
+
+def wrong_places(
+    probes: Sequence[Vector],
+    fronts: Sequence[Front],
+    holds: Callable[[Vector, int], bool],
+    dimensions: int,
+) -> list[str]:
+    """Which places of probes and ends of fronts lie outside the nodes, or off their plane.
+
+    `holds` says whether a place (3,) m lies in the cloud, of so many dimensions.
+    """
+    ends = [
+        (f"fronts, item {k}: {name}", place)
+        for k, front in enumerate(fronts)
+        for name, place in (("begin", front.begin), ("end", front.end))
+    ]
+    places = [(f"probes, item {k}", place) for k, place in enumerate(probes)] + ends
+    outside = [
+        f"{name}: it must lie among the nodes; found {list(place)} m. Move it."
+        for name, place in places
+        if not holds(place, dimensions)
+    ]
+    return outside + [
+        f"{name}: in two dimensions a line lies in the plane y = 0; found {list(place)} m. Set y "
+        "to 0."
+        for name, place in ends
+        if dimensions == 2 and place[1] != 0.0
+    ]

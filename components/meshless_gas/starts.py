@@ -13,7 +13,7 @@ class Zone:
     Parameters
     ----------
     lowest, highest : m
-        Its corners.
+        Its corners, which hold one node at least; y is left out in two dimensions.
     state
         At the start.
     """
@@ -40,6 +40,22 @@ class Riemann:
     position: Number
     left: GasState
     right: GasState
+
+    def wrong(self, low: float, high: float) -> list[str]:
+        """What does not fit in a tube between two places [m] along x."""
+        mistakes = []
+        if not low < self.position < high:
+            mistakes.append(
+                f"riemann: its position must lie within the tube, between {low:g} and {high:g} m; "
+                f"found {self.position:g} m. Move it."
+            )
+        mistakes += [
+            f"riemann.{side}: its velocity must be along x; found {list(state.velocity)} m/s. Set "
+            "y and z to 0."
+            for side, state in (("left", self.left), ("right", self.right))
+            if any(state.velocity[1:])
+        ]
+        return mistakes
 
 
 @parameters

@@ -230,6 +230,11 @@ class SphereCloud:
                 "sphere: its centre must lie on the axis of symmetry, y = z = 0; found "
                 f"{self.centre} m. Move it there."
             )
+        if self.outer_radius is not None and not self.outer_radius > self.radius:
+            mistakes.append(
+                "sphere: outer_radius is of the last layer, from the centre: it must be above "
+                f"radius, {self.radius:g} m; found {self.outer_radius:g} m. Raise it."
+            )
         return mistakes
 
     def expected_count(self, dimensions: int) -> int:
