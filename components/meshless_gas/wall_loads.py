@@ -212,9 +212,8 @@ def free_stream(params: MeshlessGasParams) -> Stream | None:
     """The stream that a body in layers stands in."""
     if params.box is not None:
         return None
-    state: GasState | None = params.initial
-    if params.sphere is not None:
-        state = params.boundaries["far"].state
+    upstream = params.boundaries["inlet" if params.sphere is None else "far"].state
+    state: GasState | None = upstream or params.initial  # an inlet may have a total state alone
     if state is None:
         return None
     gas = params.gas

@@ -4,6 +4,7 @@ import pytest
 
 from quintet.components.meshless_gas.component import MeshlessGas
 from quintet.components.meshless_gas.params import MeshlessGasParams
+from quintet.components.meshless_gas.wall_loads import free_stream
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.params import read
 
@@ -155,3 +156,17 @@ def test_a_zone_without_a_node_is_refused():
     assert not mistakes
     with pytest.raises(SceneError, match=r"zones.1: its box must hold a node; it holds none"):
         MeshlessGas(params)
+
+
+def test_the_drag_of_a_plate_is_over_that_of_the_gas_that_flows_in():
+    wind = REST | {"velocity": [0.3, 0.0, 0.0]}
+    sides = {"ahead": {"kind": "slip"}, "far": {"kind": "outflow"}, "exit": {"kind": "outflow"}}
+    sides |= {"wall": {"kind": "adiabatic"}, "inlet": {"kind": "inflow", "state": wind}}
+    table = {
+        "plate": PLATE | {"layers": {"count": 10}}, "viscous": True, "boundaries": sides,
+        "initial": REST,
+    }  # fmt: skip
+    params, mistakes = read(MeshlessGasParams, table, "gas")
+    assert not mistakes
+    stream = free_stream(params)
+    assert stream is not None and stream.mach == pytest.approx(0.3 / 1.4**0.5)
