@@ -107,15 +107,16 @@ def limit(
 ) -> float:
     """Return the largest Courant number at which no wave of a uniform stream grows.
 
-    It is over 1/Σ_j (|v·c_ij| + a |c_ij| + 2 |c_ij|/|r_ij| γ μ/(Pr ρ)), the component's own bound;
-    parameters as of `largest_step`.
+    It is over 1/Σ_j (|v·c_ij| + a |c_ij| + 2 |c_ij|/|r_ij| max(γ/Pr, 4/3) μ/ρ), the component's own
+    bound; parameters as of `largest_step`.
     """
     fluid = fluid or Fluid()
     arms, coefficients = lattice
     size = np.sqrt((coefficients**2).sum(axis=1))
     length = np.sqrt((arms**2).sum(axis=1))
     thermal = 2.0 * fluid.gamma * fluid.viscosity / fluid.prandtl
-    bound = (np.abs(coefficients @ velocity) + size + thermal * size / length).sum()
+    spread = max(thermal, 8.0 / 3.0 * fluid.viscosity)
+    bound = (np.abs(coefficients @ velocity) + size + spread * size / length).sum()
     return float(bound * largest_step(lattice, velocity, slopes, fluid))
 
 

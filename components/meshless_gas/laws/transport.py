@@ -21,6 +21,15 @@ class Transport(NamedTuple):
     gas_constant: float  # J/kg/K
 
 
+def fastest_spread(law: Transport, gamma: float) -> Transport:
+    """Law whose conduction spreads heat no slower than friction spreads waves of compression.
+
+    These spread with 4/3 μ/ρ, heat with γ μ/(Pr ρ): with a Prandtl number above 3/4 γ slower.
+    """
+    heat = gamma * law.gas_constant / (gamma - 1.0)  # J/(kg K), c_p
+    return law._replace(conduction=max(law.conduction, 4.0 / 3.0 * heat / gamma))
+
+
 @njit(**INNER)
 def sutherland(temperature, law):  # type: ignore[no-untyped-def]
     """Dynamic viscosity of a gas.

@@ -25,6 +25,7 @@ class DeviceFriction:
     def __init__(self, friction: Viscous, state: DeviceState) -> None:
         self.state, tables, queue = state, state.tables, state.queue
         self._law, self._gamma = bytes_of(friction.law, np.float64), np.float64(friction.gamma)
+        self._spread = bytes_of(friction.spread, np.float64)
         self.walls = len(friction.rows)
         self._rows = DeviceArray.of(queue, friction.rows.astype(INDEX))
         self._above = tables.of(friction.above, INDEX)
@@ -87,7 +88,7 @@ class DeviceFriction:
         state.run(
             "shorten_bounds", cloud.inner.shape[0], count, whole, width, cloud.inner,
             cloud.positions, state.primitive, self._transported, cloud.neighbours,
-            cloud.coefficients, self._gamma, self._law, state.bounds, first, parts,
+            cloud.coefficients, self._gamma, self._spread, state.bounds, first, parts,
         )  # fmt: skip
 
     def _write_transport(self) -> None:

@@ -110,6 +110,8 @@ def diffusion_rate(total, density, mu, gamma, law):  # type: ignore[no-untyped-d
     ----------
     total : float, 1/m2
         Σ |c|/|r|.
+    law : Transport
+        As `fastest_spread` has it.
     """
     heat = gamma / (gamma - 1.0) * law.gas_constant
     factor = 2.0 * gamma * law.conduction / heat

@@ -10,6 +10,7 @@ from quintet.components.meshless_gas.clouds.cloud import (
     own_areas,
 )
 from quintet.components.meshless_gas.kernels.boundaries import write_weights
+from quintet.components.meshless_gas.laws.transport import fastest_spread
 from quintet.components.meshless_gas.params import MeshlessGasParams
 from quintet.components.meshless_gas.parts import Stage, WallFriction
 from quintet.components.meshless_gas.state import Fluxes
@@ -37,6 +38,7 @@ class Viscous(WallFriction):
     def __init__(self, params: MeshlessGasParams, domain: Domain, team: Team) -> None:
         self.team, self.law = team, transport_of(params.gas)
         self.gamma = params.gas.gamma
+        self.spread = fastest_spread(self.law, self.gamma)
         cloud, (neighbours, coefficients) = domain.cloud, domain.stencils
         held = np.isin(cloud.kind[: cloud.nodes], NO_SLIP_KINDS)
         self.rows = np.flatnonzero(held).astype(np.int32)
@@ -132,7 +134,8 @@ class Viscous(WallFriction):
         self._write_transport(work.primitive)
         steps = self.team.run(
             shorten_bounds, len(domain.inner), domain.inner, domain.cloud.positions,
-            work.primitive, self.transported, *domain.stencils, self.gamma, self.law, work.bounds,
+            work.primitive, self.transported, *domain.stencils, self.gamma, self.spread,
+            work.bounds,
         )  # fmt: skip
         return float(min(steps))
 

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from gases import gas_in_box, run
 
 from quintet.components.meshless_gas.clouds.box import box
 from quintet.components.meshless_gas.kernels.gradients import write_gradients
@@ -101,3 +102,16 @@ def test_a_wall_without_slip_stops_a_fast_stream_by_a_shock(mach: float, ratio: 
         np.array([[0.0, 0.0, 1.0]] * 2), np.zeros((1, 3)), np.array([2.0]), 1.4, LAW, primitive,
     )  # fmt: skip
     assert primitive[0] == pytest.approx([ratio / 2.0, 0.0, 0.0, 0.0, ratio])
+
+
+def test_friction_that_is_faster_than_conduction_limits_the_step() -> None:
+    thick = {"gas_constant": 1.0, "viscosity": 5.0, "sutherland": 0.0, "prandtl": 20.0}
+    gas = gas_in_box(
+        gas=thick | {"reference_temperature": 1.0}, viscous=True, neighbours=8,
+        initial={"density": 1.0, "pressure": 1.0}, box={"jitter": 0.0, "highest": [1.0, 0.0, 1.0]},
+    )  # fmt: skip
+    velocities = gas.state.conservative[:, [1, 3]]  # of density 1
+    velocities[:] = 1e-3 * np.random.default_rng(1).uniform(-1.0, 1.0, velocities.shape)
+    gas.state.conservative[:, [1, 3]] = velocities
+    run(gas, 20 * gas.stable_dt())
+    assert np.abs(gas.state.primitive[:, 1:4]).max() < 2e-4

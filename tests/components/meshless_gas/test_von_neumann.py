@@ -42,9 +42,11 @@ def test_first_order_along_one_line_holds_to_the_limit_of_upwind_differences() -
     assert courant_limit == pytest.approx(1.256, rel=0.03)
 
 
-def test_diffusion_holds_to_the_limit_of_the_real_axis() -> None:
-    # Conduction along one line: rates -4 γμ/(Pr ρ h²) at most, over a bound of 2 γμ/(Pr ρ h²).
-    slow = Fluid(viscosity=1e3, prandtl=0.3)  # heat is faster than friction
+@pytest.mark.parametrize("prandtl", [0.3, 20.0])
+def test_diffusion_holds_to_the_limit_of_the_real_axis(prandtl: float) -> None:
+    # Along one line: rates -4 D/h² at most, over a bound of 2 D/h²; D is γμ/(Pr ρ) where heat is
+    # faster than friction, else 4/3 μ/ρ.
+    slow = Fluid(viscosity=1e3, prandtl=prandtl)
     courant_limit = limit(cross(ratio=1e6), np.array([1e-3, 0.0, 1e-3]), 1.0, slow)
     assert courant_limit == pytest.approx(2.5127 / 2.0, rel=0.02)
 

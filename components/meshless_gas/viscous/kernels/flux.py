@@ -107,7 +107,7 @@ def shorten_bounds(  # type: ignore[no-untyped-def]
 ):  # fmt: skip
     """Shorten the stable step (n,) s of each node by what diffusion adds; return the least.
 
-    1/Δt_i is raised by Σ_j 2 |c_ij|/|r_ij| · γ μ/(Pr ρ).
+    1/Δt_i is raised by Σ_j 2 |c_ij|/|r_ij| · max(γ/Pr, 4/3) μ/ρ, of a law by `fastest_spread`.
     """
     least = np.inf
     for row in range(first, last):
