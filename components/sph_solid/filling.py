@@ -2,6 +2,7 @@
 
 import itertools
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -14,8 +15,11 @@ from quintet.components.shared.geometry.lattice import (
 )
 from quintet.components.shared.geometry.shapes import Cylinder, Mesh, Sphere
 from quintet.components.sph_solid.body import Body
-from quintet.components.sph_solid.params import SphSolidParams
+from quintet.components.sph_solid.params import SphSolidParams, SymmetryPlane
 from quintet.components.sph_solid.state import Array
+from quintet.interfaces.errors import SceneError
+
+CUT = 0.25  # spacings from a plane of symmetry, within which it cuts through particles
 
 
 class Filling(NamedTuple):
@@ -28,22 +32,71 @@ class Filling(NamedTuple):
 def filling(body: Body, params: SphSolidParams) -> Filling:
     """Fill a body: cells of a box of its own, half a spacing from the middle of round ones.
 
-    Particles share the body's volume, what planes of symmetry cut off included.
+    The cells of a box begin at planes of symmetry that cut it. Particles of other bodies share the
+    volume of the whole, what planes cut off included.
+
+    Raises
+    ------
+    SceneError
+        Where a layer of a round body or a mesh lies on a plane, and would count whole or not.
     """
     points, share = (_tube if body.inner_radius else FILLINGS[body.shape])(body, params)
     if params.axisymmetric:
         points = points[points[:, 0] > 0.0]
         share = points[:, 0]  # of a ring, by its circumference
     volume = body.volume(params.dimensions, params.axisymmetric) * share / max(share.sum(), 1e-300)
+    if body.shape == "box":
+        volume *= math.prod(computed_shares(body, params.symmetry))
     for plane in params.symmetry:
         beyond = points[:, "xyz".index(plane.axis)]
+        if body.shape != "box" and not body.inner_radius:
+            _refuse_cut_layers(beyond, plane, params.spacing)
         computed = (beyond > plane.position) == (plane.side == "+")
         points, volume = points[computed], volume[computed]
     return Filling(points, volume)
 
 
+def computed_corners(body: Body, planes: Sequence[SymmetryPlane]) -> tuple[Array, Array]:
+    """Lowest and highest corner (3,) m of what planes of symmetry leave of a body's box.
+
+    The lowest is beyond the highest where nothing is left.
+    """
+    low, high = (np.array(corner) for corner in body.bounds)
+    for plane in planes:
+        k = "xyz".index(plane.axis)
+        if plane.side == "+":
+            low[k] = max(low[k], plane.position)
+        else:
+            high[k] = min(high[k], plane.position)
+    return low, high
+
+
+def computed_shares(body: Body, planes: Sequence[SymmetryPlane]) -> list[float]:
+    """Shares of the edges (3,) of a body's box that planes of symmetry leave."""
+    whole = zip(*body.bounds, strict=True)
+    part = zip(*computed_corners(body, planes), strict=True)
+    return [
+        max(end - begin, 0.0) / (high - low)
+        for (low, high), (begin, end) in zip(whole, part, strict=True)
+    ]
+
+
+def _refuse_cut_layers(places: Array, plane: SymmetryPlane, spacing: float) -> None:
+    """Refuse particles (n,) m that a plane of symmetry halves: their images lie in them."""
+    nearest = float(np.abs(places - plane.position).min(initial=math.inf))
+    if nearest < CUT * spacing:
+        raise SceneError(
+            f"a plane of symmetry must lie between layers of particles, {CUT:g} spacings from each "
+            f"at least; that at {plane.axis} = {plane.position:g} m is {nearest:.3g} m from one. "
+            "Move the body or the plane, or take a spacing with another number of layers."
+        )
+
+
 def _box(body: Body, params: SphSolidParams) -> tuple[Array, Array]:
-    axes = [cells_along(low, high, params.spacing) for low, high in zip(*body.bounds, strict=True)]
+    ends = body.bounds if body.shape == "mesh" else computed_corners(body, params.symmetry)
+    if 0.0 in computed_shares(body, params.symmetry):  # all is behind a plane
+        return np.zeros((0, 3)), np.zeros(0)
+    axes = [cells_along(low, high, params.spacing) for low, high in zip(*ends, strict=True)]
     if params.dimensions == 2:
         axes[1] = np.zeros(1)
     points = lattice_points(axes)

@@ -4,6 +4,8 @@ import math
 
 from quintet.components.shared.materials.params import material
 from quintet.components.sph_solid.body import Body
+from quintet.components.sph_solid.filling import computed_shares
+from quintet.components.sph_solid.method import method
 from quintet.components.sph_solid.params import SphSolidParams
 from quintet.interfaces.manifest import Plan
 
@@ -19,7 +21,7 @@ def plan(params: SphSolidParams) -> Plan:
 def expected_count(params: SphSolidParams) -> int:
     """About how many particles there will be."""
     if params.axisymmetric:
-        extent = sum(map(_half_plane, params.bodies))
+        extent = sum(_half_plane(body, params) for body in params.bodies)
     else:
         extent = sum(_computed_volume(body, params) for body in params.bodies)
     return max(1, round(extent / params.spacing**params.dimensions))
@@ -31,23 +33,18 @@ def expected_step(params: SphSolidParams) -> float:
     for body in params.bodies:
         law = material(body.material)
         speeds.append(math.sqrt((law.bulk + 4.0 / 3.0 * law.shear) / law.density))
-    drag = 1.0 if params.viscosity_linear is None else params.viscosity_linear
-    return params.courant * params.length / ((1.0 + 1.2 * drag) * max(speeds))
+    drag = 1.2 * method(params).linear
+    return params.courant * params.length / ((1.0 + drag) * max(speeds))
 
 
 def _computed_volume(body: Body, params: SphSolidParams) -> float:
     """Volume [m3] of a body's box that planes of symmetry leave, times the body's share of it."""
-    volume = body.volume(params.dimensions)
-    for plane in params.symmetry:
-        k = "xyz".index(plane.axis)
-        low, high = body.bounds[0][k], body.bounds[1][k]
-        inside = high - plane.position if plane.side == "+" else plane.position - low
-        volume *= min(max(inside / (high - low), 0.0), 1.0)
-    return volume
+    return body.volume(params.dimensions) * math.prod(computed_shares(body, params.symmetry))
 
 
-def _half_plane(body: Body) -> float:
-    """Area [m2] of a body of rings in the half-plane."""
+def _half_plane(body: Body, params: SphSolidParams) -> float:
+    """Area [m2] of a body of rings in the half-plane, that planes of symmetry leave."""
     (low, _, bottom), (high, _, top) = body.bounds
     share = 0.25 * math.pi if body.shape == "sphere" else 1.0
-    return share * (high - max(low, 0.0)) * (top - bottom)
+    computed = computed_shares(body, params.symmetry)[2]
+    return share * (high - max(low, 0.0)) * (top - bottom) * computed

@@ -10,6 +10,7 @@ from quintet.components.sph_solid.body import Body
 from quintet.components.sph_solid.component import SphSolid
 from quintet.components.sph_solid.params import SphSolidParams, SymmetryPlane
 from quintet.components.sph_solid.plan import expected_count
+from quintet.interfaces.errors import SceneError
 
 DX = 1e-3  # m
 E, NU, RHO = 1e7, 0.3, 1000.0
@@ -160,3 +161,24 @@ def test_gravity_out_of_the_plane_is_refused():
     box = Body(lowest=(0.0, 0.0, 0.0), highest=(0.01, 1.0, 0.01), material=RUBBER)
     with pytest.raises(ValueError, match="gravity must lie in the plane"):
         SphSolidParams(spacing=DX, dimensions=2, bodies=(box,), gravity=(0.0, 9.81, 0.0))
+
+
+@pytest.mark.parametrize("side", ["+", "-"])
+@pytest.mark.parametrize("low", [-2.5, -1.3])
+def test_a_box_that_a_plane_of_symmetry_cuts_has_the_mass_of_its_part(side, low):
+    ends = sorted(DX * x * (1.0 if side == "+" else -1.0) for x in (low, 2.5))
+    body = Body(
+        lowest=(ends[0], 0.0, 0.0), highest=(ends[1], 4 * DX, 4 * DX), material=RUBBER
+    )  # fmt: skip
+    plane = SymmetryPlane(axis="x", side=side)
+    params = SphSolidParams(spacing=DX, bodies=(body,), symmetry=(plane,))
+    solid = SphSolid(params)
+    assert solid.totals().mass == pytest.approx(RHO * 2.5 * 16 * DX**3, rel=1e-12)
+    assert np.abs(solid.state.position[:, 0]).min() > 0.4 * DX
+    assert expected_count(params) == pytest.approx(solid.items(), rel=0.3)
+
+
+def test_a_plane_of_symmetry_through_a_layer_of_a_ball_is_refused():
+    plane = SymmetryPlane(axis="x", position=0.4 * DX)
+    with pytest.raises(SceneError, match=r"between layers .* x = 0.0004 m is 0.0001 m from one"):
+        SphSolid(SphSolidParams(spacing=DX, bodies=(Body(**BALL),), symmetry=(plane,)))
