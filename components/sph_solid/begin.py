@@ -1,9 +1,9 @@
-"""A start from the state of another run, which must be of the same particles."""
+"""What a start must have: of bodies, and of the state of another run."""
 
 import numpy as np
 
 from quintet.components.sph_solid.ranks.method import Ranks
-from quintet.components.sph_solid.state import State
+from quintet.components.sph_solid.state import Array, State
 from quintet.interfaces.component import Fields
 from quintet.interfaces.errors import SceneError
 
@@ -63,4 +63,16 @@ def refuse_other_particles(
             f"found another {' and '.join(names)} of up to {counts.max():.0f} particles. Make "
             "spacing and bodies as they were in that run, or leave it out of "
             "begin_from.components."
+        )
+
+
+def refuse_thin_bodies(state: State, gradient: Array, ranks: Ranks) -> None:
+    """Refuse neighbours of the start that span no space: they give no gradient (n, 9) 1/s."""
+    without = state.body[~np.isfinite(gradient).all(axis=1)]
+    body = int(ranks.greatest(np.array([float(without.max(initial=-1))]))[0])
+    if body >= 0:
+        raise SceneError(
+            f"bodies.{body}: with the neighbours of the start (total_lagrangian) each particle "
+            "needs neighbours in all directions; found a body of one layer of particles, or one "
+            "particle. Take a smaller spacing, or set total_lagrangian to false."
         )

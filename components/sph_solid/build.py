@@ -59,12 +59,11 @@ def initial_state(params: SphSolidParams, laws: list[Solid], numbers: list[int])
         for shape, particles in zip(params.bodies, fillings, strict=True)
     ])  # fmt: skip
     fixed = _fixed_axes(position, params)
-    if params.dimensions == 2:
-        velocity[:, 1] = 0.0
     for k in range(3):
         velocity[(fixed >> k) & 1 == 1, k] = 0.0
     speed = [np.sqrt(law.c2 + 4.0 / 3.0 * law.shear / law.density) for law in laws]
     kind, is_glued = np.array(numbers)[body], _is_glued(position, params)
+    _refuse_held_twice(fixed, is_glued)
     glued, count = int(is_glued.sum()), len(position)
     return State(
         position=position,
@@ -116,6 +115,16 @@ def _is_glued(position: Array, params: SphSolidParams) -> Mask:
         _require(rows.any(), f"glued.{number}: its box must hold a particle; it holds none.")
         is_glued |= rows
     return is_glued
+
+
+def _refuse_held_twice(fixed: Whole, is_glued: Mask) -> None:
+    """Refuse particles that are held and glued: the mesh would not get their whole force."""
+    count = int((is_glued & (fixed > 0)).sum())
+    if count:
+        raise SceneError(
+            f"glued: particles must not be fixed too, as they move with a partner's mesh; found "
+            f"{count} in boxes of both. Make the boxes of fixed smaller, and hold the mesh."
+        )
 
 
 def gauged(points: Array, params: SphSolidParams) -> Whole:

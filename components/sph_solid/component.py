@@ -8,7 +8,7 @@ import numpy as np
 
 from quintet.components.shared.threads import Team
 from quintet.components.sph_solid import MANIFEST
-from quintet.components.sph_solid.begin import restarted
+from quintet.components.sph_solid.begin import refuse_thin_bodies, restarted
 from quintet.components.sph_solid.build import gauged, initial_state, materials, pair_law
 from quintet.components.sph_solid.diagnostics import check, failure, totals
 from quintet.components.sph_solid.features import pair_sums, partner_faces, ranks
@@ -185,6 +185,8 @@ class SphSolid(Component):
         self.materials.write_stresses(state, self.rows, self.law)
         self.rows.motion[: state.particles, 3] = state.sound
         self._write_accelerations()
+        if self.lists.are_for_good:
+            refuse_thin_bodies(state, self.rows.gradient, self.all_ranks)
 
     def _search(self, dt: float) -> None:
         """Sort particles by their places in the middle of a step of dt [s], and list neighbours."""

@@ -208,7 +208,7 @@ class SphSolidParams:
         _require(
             not any(map(self._leaves_the_plane, self.bodies)),
             "bodies: in two dimensions angular_velocity is about y alone, and 0 of "
-            "axisymmetric ones; velocity_gradient has nothing along y. Correct it.",
+            "axisymmetric ones; velocity and velocity_gradient have nothing along y. Correct it.",
         )
         _require(
             self.gravity[1] == 0.0 and not (self.axisymmetric and self.gravity[0] != 0.0),
@@ -231,7 +231,7 @@ class SphSolidParams:
     def _leaves_the_plane(self, body: Body) -> bool:
         turn, (along_x, along_y, along_z) = body.angular_velocity, body.velocity_gradient
         turns = turn[0] != 0.0 or turn[2] != 0.0 or (self.axisymmetric and turn[1] != 0.0)
-        return turns or any((along_x[1], *along_y, along_z[1]))
+        return turns or any((body.velocity[1], along_x[1], *along_y, along_z[1]))
 
     @property
     def _narrowest(self) -> float:

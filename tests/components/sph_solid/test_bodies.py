@@ -8,7 +8,7 @@ import pytest
 from quintet.components.shared.materials.params import Material
 from quintet.components.sph_solid.body import Body
 from quintet.components.sph_solid.component import SphSolid
-from quintet.components.sph_solid.params import SphSolidParams, SymmetryPlane
+from quintet.components.sph_solid.params import Fixed, Region, SphSolidParams, SymmetryPlane
 from quintet.components.sph_solid.plan import expected_count
 from quintet.interfaces.errors import SceneError
 
@@ -182,3 +182,27 @@ def test_a_plane_of_symmetry_through_a_layer_of_a_ball_is_refused():
     plane = SymmetryPlane(axis="x", position=0.4 * DX)
     with pytest.raises(SceneError, match=r"between layers .* x = 0.0004 m is 0.0001 m from one"):
         SphSolid(SphSolidParams(spacing=DX, bodies=(Body(**BALL),), symmetry=(plane,)))
+
+
+def test_velocities_off_the_plane_of_two_dimensions_are_refused():
+    with pytest.raises(ValueError, match="velocity and velocity_gradient have nothing along y"):
+        ring(velocity=(1.0, 2.0, 0.0))
+
+
+def test_a_body_of_one_layer_is_refused_with_the_neighbours_of_the_start():
+    thick = {"lowest": (0.0, 0.0, 0.0), "highest": (4 * DX, 4 * DX, 4 * DX), "material": RUBBER}
+    thin = thick | {"lowest": (0.0, 0.0, 6 * DX), "highest": (4 * DX, 4 * DX, 7 * DX)}
+    bodies = tuple(Body(**shape) for shape in (thick, thin))
+    with pytest.raises(SceneError, match=r"bodies.1: .* found a body of one layer"):
+        SphSolid(SphSolidParams(spacing=DX, bodies=bodies))
+
+
+def test_particles_that_are_both_fixed_and_glued_are_refused():
+    body = Body(lowest=(0.0, 0.0, 0.0), highest=(4 * DX, 4 * DX, 4 * DX), material=RUBBER)
+    box = {"lowest": (0.0, 0.0, 0.0), "highest": (DX, 1.0, 1.0)}
+    params = SphSolidParams(
+        spacing=DX, bodies=(body,), fixed=(Fixed(**box, directions=("y",)),),
+        glued=(Region(**box),),
+    )  # fmt: skip
+    with pytest.raises(SceneError, match=r"must not be fixed too, .* found 16 in boxes of both"):
+        SphSolid(params)
