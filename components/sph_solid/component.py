@@ -270,6 +270,9 @@ class SphSolid(Component):
         settings = self.params.spacing, method(self.params).total_lagrangian
         contact = self.faces.penalty.beginning(state) if self.faces else {}
         self.load({**restarted(state, self.state, self.all_ranks, *settings), **contact})
+        if self.lists.are_short(self.state):  # pairs of that run did not reach so far
+            self.lists.widen(self.state, 0.0)
+            self._list()
 
     def totals(self) -> Totals:
         """Mass, momentum and energies, without the motion of particles that a mesh carries."""

@@ -112,6 +112,10 @@ class SolidLists:
         """Whether no stable step lets two particles approach each other by so much [m]."""
         return not spread < MOST_SPREAD * self.support
 
+    def are_short(self, state: State) -> bool:
+        """Whether lists of a state's reach end before the support of pairs, with any skin."""
+        return state.reach < (1.0 + 0.5 * LEAST) * self.support
+
     def widen(self, state: State, spread: float) -> None:
         """Choose how far the next lists reach, by what two approach each other in a step [m]."""
         share = min(max(SKIN * math.sqrt(spread / self.support), LEAST), MOST)

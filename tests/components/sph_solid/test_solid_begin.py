@@ -79,3 +79,14 @@ def test_particles_of_another_size_are_refused_though_as_many():
     state["volume"] = 8.0 * state["volume"]
     with pytest.raises(SceneError, match="found another volume of up to 96 particles"):
         block().begin_from(state)
+
+
+@pytest.mark.parametrize("total_lagrangian", [False, True])
+def test_a_larger_smoothing_length_finds_its_neighbours(total_lagrangian):
+    state = advance(block(total_lagrangian=total_lagrangian), 2).save()
+    fresh = block(total_lagrangian=total_lagrangian, smoothing=1.6)
+    count = len(fresh.lists.near.list)
+    wide = block(total_lagrangian=total_lagrangian, smoothing=1.6)
+    wide.begin_from(state)
+    assert wide.state.reach == fresh.state.reach
+    assert len(wide.lists.near.list) == pytest.approx(count, rel=0.02)
