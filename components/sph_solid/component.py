@@ -106,7 +106,7 @@ class SphSolid(Component):
             self.faces.penalty.take(fields)
         if "glue_activity.active" in fields:
             active, mass = fields["glue_activity.active"], self.materials.mass(state)
-            release(state, active, mass, self.all_ranks)
+            release(state, active, mass, self.params.gravity, self.all_ranks)
         if "glued.velocity" in fields:
             state.pulled[:] = fields["glued.velocity"] * state.active[:, None]
 

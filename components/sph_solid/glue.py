@@ -7,6 +7,7 @@ import numpy as np
 
 from quintet.components.sph_solid.ranks.method import Ranks
 from quintet.components.sph_solid.state import Array, State, Whole
+from quintet.interfaces.params import Vector
 
 
 def glued_rows(state: State, attached: bool = False) -> Whole:
@@ -19,14 +20,19 @@ def glued_rows(state: State, attached: bool = False) -> Whole:
     return rows[state.active[state.glue[rows]] > 0.0] if attached else rows
 
 
-def release(state: State, active: Array, mass: Array, ranks: Ranks) -> None:
-    """Set which are attached (glued,), with masses (n,) kg; released ones bring their motion."""
+def release(state: State, active: Array, mass: Array, gravity: Vector, ranks: Ranks) -> None:
+    """Set which are attached (glued,), with masses (n,) kg.
+
+    Released ones bring the energy of their motion, and of their place in gravity [m/s2].
+    """
     if (active < state.active).any():
         rows = glued_rows(state)
         rows = rows[(active < state.active)[state.glue[rows]]]
-        columns = np.column_stack([mass[rows], (state.velocity[rows] ** 2).sum(axis=1)])
-        masses, squares = np.ascontiguousarray(ranks.all_rows(state.glue[rows], columns).T)
-        state.work += 0.5 * float(masses @ squares)
+        squares = (state.velocity[rows] ** 2).sum(axis=1)
+        fallen = (state.position[rows] * gravity).sum(axis=1)
+        columns = np.column_stack([mass[rows], squares, fallen])
+        masses, squares, fallen = np.ascontiguousarray(ranks.all_rows(state.glue[rows], columns).T)
+        state.work += 0.5 * float(masses @ squares) - float(masses @ fallen)
     state.active[:] = active
 
 

@@ -206,3 +206,16 @@ def test_particles_that_are_both_fixed_and_glued_are_refused():
     )  # fmt: skip
     with pytest.raises(SceneError, match=r"must not be fixed too, .* found 16 in boxes of both"):
         SphSolid(params)
+
+
+def test_particles_that_come_off_a_mesh_bring_their_energy_in_gravity():
+    body = Body(lowest=(0.0, 0.0, 0.0), highest=(4 * DX, 4 * DX, 4 * DX), material=RUBBER)
+    region = Region(lowest=(0.0, 0.0, 0.0), highest=(DX, 1.0, 1.0))
+    params = SphSolidParams(
+        spacing=DX, bodies=(body,), glued=(region,), gravity=(0.0, 0.0, -9.81)
+    )  # fmt: skip
+    solid = SphSolid(params)
+    state, mass = solid.state, solid.materials.mass(solid.state)
+    loose = state.glue >= 0
+    solid.take({"glue_activity.active": np.zeros(16)})
+    assert state.work == pytest.approx(9.81 * mass[loose] @ state.position[loose, 2], rel=1e-12)
