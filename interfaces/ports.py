@@ -112,9 +112,9 @@ FACE_ACTIVITY = Port("face_activity", fields=(ACTIVE,))
 GLUE_ACTIVITY = Port("glue_activity", fields=(ACTIVE,))
 NODE_MASS = Port("node_mass", fields=(Field("added", (), "kg"),))
 
-# Contact: particles or bodies touch the faces of a mesh. The mesh gives its faces and what the
-# stiffness of contact follows from; the other side computes the forces and gives their reaction on
-# the nodes. Forces follow from places at the begin of a window, at which the mesh is told of them;
+# Contact: particles, bodies or a mesh touch the faces of a mesh. The mesh gives its faces and what
+# the stiffness of contact follows from; the other side computes the forces and gives their reaction
+# on the nodes. Forces follow from places at the begin of a window, at which the mesh is told of them;
 # velocities cross as displacements over the last window, so that work is counted by what moved.
 # Meshes that may erode take contact's forces by a port of their own. When `sample` is asked for
 # `inner` (1), such a mesh answers with all static fields of CONTACT_SURFACE: first the nodes and
@@ -139,10 +139,12 @@ CONTACT_FACES = Port(
         # Closed: the last node of a triangle stands twice, edges go forth and back.
         Field("corner", (4,), "1", labels=True),
         *LAYER,
+        Field("width", (), "m"),  # of each face, its longest side at the start
         Field("friction", (), "1"),  # of each face, Coulomb's coefficient
         Field("stiffness", (), "1"),  # of each face, scale of the penalty stiffness
         Field("safety", (), "1"),  # one row: share of the predicted stable step
-        Field("points", (), "1"),  # one row: points across a particle that bear its force
+        # One row: points across a particle that bear its force; 0: the component decides.
+        Field("points", (), "1"),
     ),
 )
 PLANAR_CONTACT_FACES = replace(CONTACT_FACES, static=(*CONTACT_FACES.static, DIMENSIONS))

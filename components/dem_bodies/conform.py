@@ -75,7 +75,7 @@ def _on_a_face(params: dict[str, Any]) -> ConformCase:
         "corner": np.arange(4.0)[None], "mass": np.full(4, 0.05), "bulk": np.full(1, 1e7),
         "shear": np.full(1, 5e6), "thickness": np.full(1, 0.1), "friction": np.full(1, 0.3),
         "stiffness": np.full(1, 1.0), "safety": np.full(1, 0.9), "points": np.ones(1),
-        "step": np.full(1, 1e-3),
+        "step": np.full(1, 1e-3), "width": np.full(1, 4.0),
     }  # fmt: skip
     motion = {"position": place, "velocity": np.zeros((4, 3))}
     case = _case("spheres on a face", params, smooth=False)

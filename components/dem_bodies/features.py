@@ -17,6 +17,7 @@ from quintet.components.dem_bodies.shapes.rigid_body import RigidBody
 from quintet.components.dem_bodies.shapes.solid import Solid, contact_length, half_thickness
 from quintet.components.dem_bodies.state import Model, State
 from quintet.components.dem_bodies.timetable import Timetable, has_changes
+from quintet.components.shared.contact.one_rank import require_one_rank
 from quintet.interfaces.component import Array, Fields, Keys, Resources
 from quintet.interfaces.errors import SceneError
 
@@ -98,7 +99,7 @@ def partner_faces(
     if "contact_faces" not in joined:
         return None
     # Scenes without contact of two components do not import it.
-    from quintet.components.dem_bodies.partner_faces import PartnerFaces, require_one_rank
+    from quintet.components.dem_bodies.partner_faces import PartnerFaces
 
-    require_one_rank(resources)
+    require_one_rank("bodies", resources)
     return PartnerFaces(static, params, model, state, mass)

@@ -9,8 +9,7 @@ from quintet.components.dem_bodies.params import DemBodiesParams, Material
 from quintet.components.dem_bodies.state import OMEGA, VELOCITY, Model, State
 from quintet.components.shared.contact.kernels import Points
 from quintet.components.shared.contact.penalty import PenaltyContact
-from quintet.interfaces.component import Array, Fields, Resources
-from quintet.interfaces.errors import SceneError
+from quintet.interfaces.component import Array, Fields
 
 NO_AREA = np.zeros(0)  # m2, which only penalty forces need
 NONE_FIXED = np.zeros(0, np.int64)  # spheres that touch faces are free
@@ -61,13 +60,3 @@ def moduli(material: Material) -> tuple[float, float]:
     """E/(1 - ν²) and G/(2 - ν) [Pa] of Hertz's and Mindlin's contacts."""
     e, v = material.youngs_modulus, material.poissons_ratio
     return e / (1.0 - v * v), e / (2.0 * (1.0 + v) * (2.0 - v))
-
-
-def require_one_rank(resources: Resources) -> None:
-    """Raise SceneError where bodies are shared among ranks."""
-    communicator = resources.communicator
-    if communicator is not None and communicator.size > 1:
-        raise SceneError(
-            f"contact_with_faces must be false of bodies on {communicator.size} ranks; it is true. "
-            "Take one rank and several threads."
-        )

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import astuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -17,7 +18,15 @@ from quintet.components.fe_plate.diagnostics import (
     require_before_walls,
     totals,
 )
-from quintet.components.fe_plate.features import Loads, Pressures, Stepped, ranks, stepping_kernel
+from quintet.components.fe_plate.erosion import eroding_parts
+from quintet.components.fe_plate.features import (
+    Loads,
+    Pressures,
+    Stepped,
+    partner_faces,
+    ranks,
+    stepping_kernel,
+)
 from quintet.components.fe_plate.gauges import measured, readings
 from quintet.components.fe_plate.judgement import EVERY, Judge
 from quintet.components.fe_plate.kernels.flow import HUGE
@@ -44,6 +53,9 @@ from quintet.interfaces.component import (
     Totals,
 )
 
+if TYPE_CHECKING:
+    from quintet.components.fe_plate.partner_faces import PartnerFaces
+
 FEWEST = 128  # blocks that are worth handing to another thread
 SHARES = 4  # of each thread: where they meet, forces are summed once more
 SQUASHED = 4.0  # least steps in which a node that meets a wall moves by an element
@@ -53,7 +65,9 @@ TOUCHED_POSITION, TOUCHED_VELOCITY = "contact_surface.position", "contact_surfac
 MEAN_VELOCITY, ACTIVE = "node_glue.velocity", "face_activity.active"
 OPEN = "open_faces.active"
 INNER, TOUCHING = "contact_surface.inner", "contact_surface_load.force"
-EARLY = ("node_glue", "contact_surface")  # ports whose partners push as at a step's begin
+REACTION = "contact_load.force"
+# Ports whose partners push as at a step's begin.
+EARLY = ("node_glue", "contact_surface", "contact_faces")
 
 
 class FePlate(Component):
@@ -75,6 +89,7 @@ class FePlate(Component):
 
     def __init__(self, params: FePlateParams, resources: Resources = ONE_THREAD) -> None:
         self.params, (self.takes, self.gives) = params, self.ports_of(params)
+        self.resources = resources
         self.team = Team(resources.threads, FEWEST, SHARES)
         self.all_ranks = ranks(resources, self.team.ends)
         whole = structure(params, self.team.ends)
@@ -96,6 +111,7 @@ class FePlate(Component):
         self.loaded = self.on_surface  # nodes that partners push
         self.whole: Structure | None = whole  # until partners are joined
         self.opening: OpeningSurface | None = None  # if a partner touches what erosion opens
+        self.touching: PartnerFaces | None = None  # faces of a partner that these touch
         self.state = initial_state(params, built)
         self.kernel = stepping_kernel(points_of(params))
         self.all_loads = Loads(self.on_surface, Pressures(params.pressures, built))
@@ -127,19 +143,29 @@ class FePlate(Component):
     def sample(self, request: Fields) -> Fields:
         """Sample the structure below its faces, hang points on these, or list inner faces."""
         if INNER in request and self.whole:
-            place = self.built.places, self.params, self.surface, self.all_ranks
-            self.opening = self.opening or OpeningSurface(self.whole, *place)
-            return {f"contact_surface.{key}": a for key, a in self.opening.described.items()}
+            opening = self._open_surface(self.whole)
+            return {f"contact_surface.{key}": a for key, a in opening.described.items()}
         port = next(iter(request)).partition(".")[0]
         return mesh_answer(port, request, self.describe())
 
+    def _open_surface(self, whole: Structure) -> OpeningSurface:
+        place = self.built.places, self.params, self.surface, self.all_ranks
+        self.opening = self.opening or OpeningSurface(whole, *place)
+        return self.opening
+
     def bind(self, static: Fields, joined: Keys) -> None:
-        """Take the mass of particles that are glued to the nodes."""
+        """Take the mass of particles that are glued to the nodes, and faces that are touched."""
+        if self.whole and "contact_faces" in joined and eroding_parts(self.params):
+            self._open_surface(self.whole)
         self.whole = None
         if self.opening:
             self.loaded = self.all_loads.surface = self.opening.nodes
             self.loads = np.zeros((self.loaded.size, 3))
             self.half_kick = np.zeros_like(self.loads[self.loaded.ids])
+        surface = {"start": self.start, "corner": self.corner, **self.layer}
+        surface = dict(self.opening.described) if self.opening else surface
+        velocity = self.state.velocity[self.loaded.rows]
+        self.touching = partner_faces(static, joined, surface, velocity, self.resources)
         self.kicks_early = not joined.isdisjoint(EARLY)
         # What pushes in the first half of a step alone: the link keeps that balance.
         self.judge.closed = not self.kicks_early
@@ -154,11 +180,14 @@ class FePlate(Component):
         require_before_walls(self.built, self.state, self.all_ranks)
 
     def stable_dt(self) -> float:
-        """Return a share of the proven bound."""
-        return self.params.courant * self.bound
+        """Return a share of the proven bound, or contact's stable step."""
+        free = self.params.courant * self.bound
+        return min(free, self.touching.penalty.stable_step(self.bound)) if self.touching else free
 
     def take(self, fields: Fields) -> None:
         """Set the forces [N] on the surface's nodes, none if left out, and their added mass."""
+        if self.touching:
+            self.touching.penalty.take(fields)
         force, touching = fields.get("node_load.force"), fields.get(TOUCHING)
         self.loads[:] = 0.0 if touching is None else touching
         if force is not None:
@@ -172,8 +201,9 @@ class FePlate(Component):
     def step(self, dt: float) -> None:
         """Advance by exactly dt [s]: half kick, drift, stresses, half kick."""
         total, damping = self.accumulated, self.params.mass_damping
-        rows, loads = self.loaded.rows, self.loads[self.loaded.ids]
-        loaded = self.all_loads.write(self.state, self.loads, total.time)
+        rows, pushes = self.loaded.rows, self._pushes(dt)
+        loads = pushes[self.loaded.ids]
+        loaded = self.all_loads.write(self.state, pushes, total.time)
         if self.kicks_early:
             self._kick_early(dt, loads)
         decay = math.exp(-0.5 * damping * dt)  # of the kinetic energy, in either half
@@ -196,6 +226,18 @@ class FePlate(Component):
             add_damped(self.model, self.state, 1.0 / decay - 1.0)
         if self.kicks_early:
             self.state.velocity[rows] -= self.half_kick
+
+    def _pushes(self, dt: float) -> Array:
+        """Forces (k, 3) N of partners, and of contact with faces, in a step of dt [s]."""
+        if not self.touching:
+            return self.loads
+        state, rows = self.state, self.loaded.rows
+        moving = state.position[rows], state.mean_velocity[rows]
+        return np.asarray(self.loads + self.touching.push(*moving, self._open_faces(), dt))
+
+    def _open_faces(self) -> Array | None:
+        """1 of each face (m,) that is part of the surface, else 0; None where none may erode."""
+        return self.opening.open_faces(self.state) if self.opening else None
 
     def _kick_early(self, dt: float, loads: Array) -> None:
         """Apply the partners' loads in the step's first half, and not in its second one.
@@ -257,6 +299,9 @@ class FePlate(Component):
         if missing := wanted & {ACTIVE, OPEN} - values.keys():
             active = self.owners.gather(self.places_of_owners.active(self.state))
             values |= {key: active.copy() for key in missing}
+        if REACTION in wanted:
+            penalty = self.touching.penalty if self.touching else None
+            values[REACTION] = penalty.reaction.copy() if penalty else np.zeros((0, 3))
         return values | readings(self.measured, self.built, self.state, wanted, self.all_ranks)
 
     def save(self) -> Fields:
@@ -266,7 +311,8 @@ class FePlate(Component):
         saved["judge"] = self.judge.save()
         saved["loads"] = self.loads.copy()
         saved["half_kick"] = self.loaded.gather(self.half_kick.copy())
-        return saved | {"added_mass": self.added_mass.added.copy()}
+        saved["added_mass"] = self.added_mass.added.copy()
+        return saved | dict(self.touching.penalty.save()) if self.touching else saved
 
     def load(self, state: Fields) -> None:
         """Restore a saved state, bit for bit."""
@@ -279,6 +325,8 @@ class FePlate(Component):
         time, brought, steps, self.bound = state["accumulated"].tolist()
         self.accumulated = Accumulated(time, brought, int(steps))
         self.judge.load(state["judge"])
+        if self.touching:
+            self.touching.load(state, self._open_faces())
 
     def begin_from(self, state: Fields) -> None:
         """Begin from the state of another run; times of pressures count from now on.
@@ -286,7 +334,8 @@ class FePlate(Component):
         Its partners may have pushed fewer or more nodes: those of the coupled faces come first.
         """
         pushed = {key: first_rows(state[key], self.loaded.size) for key in ("loads", "half_kick")}
-        super().begin_from({**state, **pushed})
+        contact = self.touching.penalty.beginning(state) if self.touching else {}
+        super().begin_from({**state, **pushed, **contact})
         self.accumulated.time = 0.0
         self.accumulated.steps = 0  # the first step takes down energies to judge by
         self.judge.most[:] = 0.0
@@ -300,11 +349,16 @@ class FePlate(Component):
         mass = self.added_mass.total()[: self.model.moving]
         kicks = (self.loaded.rows, self.half_kick) if self.kicks_early else None
         energies = motion(self.state, mass, self.model.gravity, kicks)
-        return totals(self.state, self.built, mass, energies, self.all_ranks)
+        sums = totals(self.state, self.built, mass, energies, self.all_ranks)
+        if self.touching:
+            sums.internal += self.touching.penalty.numbers.energy
+            sums.dissipated = self.touching.penalty.numbers.dissipated
+        return sums
 
     def warnings(self) -> dict[str, str]:
         """Energy that appears, hourglassing, and motion that bulk viscosity takes."""
-        return self.judge.warnings()
+        texts = self.judge.warnings()
+        return texts | self.touching.penalty.warnings() if self.touching else texts
 
     def notes(self) -> tuple[str, ...]:
         """Sizes of meshes from files and what of them is left out; integration in thin parts."""

@@ -1,6 +1,7 @@
 """Optional physics as objects: pressures on faces, and the integration of the elements."""
 
 from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,7 +14,11 @@ from quintet.components.fe_plate.params import Pressure
 from quintet.components.fe_plate.ranks.method import Ranks, Rows
 from quintet.components.fe_plate.ranks.one import OneRank
 from quintet.components.fe_plate.state import Array, State
-from quintet.interfaces.component import Resources
+from quintet.components.shared.contact.one_rank import require_one_rank
+from quintet.interfaces.component import Fields, Keys, Resources
+
+if TYPE_CHECKING:
+    from quintet.components.fe_plate.partner_faces import PartnerFaces
 
 Stepped = tuple[float, float, int]  # stable step [s], least volume over that at the start, of which
 Kernel = Callable[..., Stepped]
@@ -28,6 +33,19 @@ def ranks(resources: Resources, ends: Callable[[int], list[int]]) -> Ranks:
     from quintet.components.fe_plate.ranks.several import SeveralRanks
 
     return SeveralRanks(communicator, ends)
+
+
+def partner_faces(
+    static: Fields, joined: Keys, surface: Fields, velocity: Array, resources: Resources
+) -> "PartnerFaces | None":
+    """Faces of a partner's mesh that a surface touches; None where no link joins them."""
+    if "contact_faces" not in joined:
+        return None
+    # Scenes without contact of two meshes do not import it.
+    from quintet.components.fe_plate.partner_faces import PartnerFaces
+
+    require_one_rank("a structure", resources)
+    return PartnerFaces(static, surface, velocity)
 
 
 class Pressures:

@@ -122,6 +122,9 @@ class FePlateParams:
         Nodes that are held.
     coupled_faces
         Outer faces that partners see; all if none are said.
+    contact_with_faces
+        Whether these touch the faces of a partner's mesh (link contact). Of two meshes one needs
+        it, which then computes the forces.
     pressures
         On outer faces.
     rigid_walls
@@ -159,6 +162,7 @@ class FePlateParams:
     node_sets: tuple[NodeSet, ...] = ()
     fixed: tuple[Fixed, ...] = ()
     coupled_faces: tuple[Faces, ...] = ()
+    contact_with_faces: bool = False
     pressures: tuple[Pressure, ...] = ()
     rigid_walls: tuple[RigidWall, ...] = ()
     gauges: Gauges = Gauges()

@@ -1,11 +1,16 @@
 """What the structure takes and gives: loads at nodes of its surface; the motion of its faces."""
 
+from dataclasses import replace
+
 from quintet.components.fe_plate.erosion import eroding_parts
 from quintet.components.fe_plate.params import FePlateParams
 from quintet.interfaces.component import Field, Port
 from quintet.interfaces.manifest import Ports
 from quintet.interfaces.ports import (
     ACTIVE,
+    CONTACT_ACTIVITY,
+    CONTACT_FACES,
+    CONTACT_LOAD,
     CONTACT_SURFACE,
     CONTACT_SURFACE_LOAD,
     FACE_ACTIVITY,
@@ -14,6 +19,7 @@ from quintet.interfaces.ports import (
     NODE_LOAD,
     NODE_MASS,
     OPEN_FACES,
+    PLANAR_CONTACT_FACES,
     PLANAR_CONTACT_SURFACE,
     PLANAR_FACES,
     PLANAR_NODE_GLUE,
@@ -44,6 +50,7 @@ NODE_SET_GAUGE = Port("node_set_gauge", (POSITION, VELOCITY))
 ELEMENT_SET_GAUGE = Port(
     "element_set_gauge", (*PART_GAUGE.fields, VON_MISES, PLASTIC_STRAIN, DAMAGE)
 )
+UNTOUCHED = "set contact_with_faces = true"  # where a link needs contact with faces
 # Of the view, at the corners of outer faces: means of the elements that meet there.
 SHOWS = (VON_MISES, VELOCITY, PRESSURE, PLASTIC_STRAIN, TEMPERATURE, DAMAGE, DISPLACEMENT)
 
@@ -63,4 +70,9 @@ def ports(params: FePlateParams) -> Ports:
     mesh = (PLANAR_FACES, PLANAR_NODE_GLUE) if planar else (FACES, NODE_GLUE)
     touched = (PLANAR_CONTACT_SURFACE if planar else CONTACT_SURFACE, OPEN_FACES)
     taken = (NODE_LOAD, NODE_MASS, *((CONTACT_SURFACE_LOAD,) if eroding_parts(params) else ()))
-    return taken, (*mesh, FACE_ACTIVITY, *touched, *measured)
+    given = *mesh, FACE_ACTIVITY, *touched
+    if not params.contact_with_faces:
+        lacking = replace(FACE_ACTIVITY, lacks=((CONTACT_FACES.name, UNTOUCHED),))
+        return taken, (*mesh, lacking, *touched, *measured)
+    faces = PLANAR_CONTACT_FACES if planar else CONTACT_FACES
+    return (*taken, faces, CONTACT_ACTIVITY), (*given, CONTACT_LOAD, *measured)

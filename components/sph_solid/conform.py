@@ -26,6 +26,7 @@ FACE = {
     "contact_faces.stiffness": np.full(1, 1.0),
     "contact_faces.safety": np.full(1, 0.9),
     "contact_faces.points": np.ones(1),
+    "contact_faces.width": np.full(1, 0.05),
     "contact_faces.step": np.full(1, 1e-6),
 }
 

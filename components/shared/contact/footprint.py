@@ -21,7 +21,7 @@ BESIDE = 0.1  # of a radius: by how much the foot of one of its points may miss 
 @njit(**EXACT)
 def measure(
     place: Array, radii: Array, near: Near, corner: Whole, position: Array, across: Whole,
-    reach: float, slack: float,
+    reach: float, slack: float, off: float,
 ) -> float:  # fmt: skip
     """Write gaps, normals, nodes and weights of particles near faces.
 
@@ -41,6 +41,9 @@ def measure(
         Largest diameter: particles that are less deep below a face count as passed through it.
     slack : float, m
         By which particles and faces may still approach each other, before others are near.
+    off : float, 1
+        Distance from a face at which particles touch it, over their radius: 1, or 0 of points of a
+        surface.
 
     Returns
     -------
@@ -55,7 +58,7 @@ def measure(
             at[d] = place[near.row[q], d]
         f, xi, eta = nearest(at, near, q, reach, slack, room)
         if f >= 0:
-            gap = gap_of(at, near.x[f], radius, room, n)
+            gap = gap_of(at, near.x[f], radius, off * radius, room, n)
             if gap < -2.0 * radius:
                 passed, gap = max(passed, -gap / radius), math.inf
         if gap > radius:

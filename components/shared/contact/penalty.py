@@ -74,6 +74,9 @@ class PenaltyContact:
         Of particles: they touch a face at their radius, half a spacing.
     spheres : bool
         Whether they are spheres, which touch by Hertz's law.
+    on_surface : bool
+        Whether they are points of a surface, which touch where they lie; their radius is half the
+        thickness of the layer behind them.
 
     Raises
     ------
@@ -82,8 +85,9 @@ class PenaltyContact:
     """
 
     def __init__(
-        self, static: Fields, particles: int, radius: ArrayLike, spheres: bool = False
-    ) -> None:
+        self, static: Fields, particles: int, radius: ArrayLike, spheres: bool = False,
+        on_surface: bool = False,
+    ) -> None:  # fmt: skip
         of = {key.partition(".")[2]: np.array(array) for key, array in static.items()}
         self.corner = np.ascontiguousarray(of["corner"], np.int64)
         self.mass = of["mass"]
@@ -93,7 +97,8 @@ class PenaltyContact:
         layer = of["thickness"], of["friction"], of["stiffness"], of["mass"]
         self.faces = modulus, tangential_modulus(*moduli), *layer
         is_planar = bool((self.corner[:, 0] == self.corner[:, 3]).all())
-        points = int(of["points"].max())
+        self.off = 0.0 if on_surface else 1.0  # radii from a face at which they touch it
+        points = 1 if on_surface else max(1, int(of["points"].max()))
         if spheres and points > 1:
             raise SceneError(
                 f"points_across of a link contact must be 1 where spheres touch faces, as they "
@@ -144,13 +149,12 @@ class PenaltyContact:
         ω dt = 2 (Hairer, Lubich & Wanner, Geometric Numerical Integration, section VI.3).
         """
         nodes, numbers, last = len(self.mass), self.numbers, self.numbers.last
-        moving = (self.position - self.before) / last if last else np.zeros((nodes, 3))
-        surface = Surface(self.corner, *self.faces, self.position, moving)
+        surface = self._surface()
         since = last  # s, that places have changed for
         if self.coming is not self.active:
-            self._change_faces(points, surface, last)
+            self._change_faces(points, surface)
             since = 0.0
-        near, apart, passed = self._measure(points, moving, since)
+        near, apart, passed = self._measure(points, surface.velocity, since)
         former, moved = self.reaction, self.position - self.before
         self.reaction, stiffness = np.zeros((nodes, 3)), np.zeros(nodes)
         loads = Loads(self.reaction, stiffness, self.slip, self.held, self.kicked)
@@ -168,20 +172,38 @@ class PenaltyContact:
         numbers.deepest = max(numbers.deepest, passed, sums.depth)
         numbers.limit = min(sums.limit, apart)
 
-    def _change_faces(self, points: Points, surface: Surface, dt: float) -> None:
+    def replace_points(self, before: Points, after: Points) -> None:
+        """Take other points of a surface, and dissipate the springs of those that are gone."""
+        surface = self._surface()
+        self.numbers.dissipated += self._released(before, surface, self.numbers.last)
+        self.near = None
+        self.numbers.dissipated -= self._released(after, surface, 0.0)
+
+    def _surface(self) -> Surface:
+        """Faces and nodes at a step's begin."""
+        last, moved = self.numbers.last, self.position - self.before
+        moving = moved / last if last else np.zeros_like(moved)
+        return Surface(self.corner, *self.faces, self.position, moving)
+
+    def _change_faces(self, points: Points, surface: Surface) -> None:
         """Take the faces that are active now, and dissipate the springs on faces that eroded.
 
         What the particles press on lies further away than what has eroded: no spring gains.
         """
-        is_first = dt == 0.0  # nothing has been touched yet
-        if not is_first:
-            before, _, _ = self._measure(points, surface.velocity, dt)
-            self.numbers.dissipated += released_energy(points, surface, before, dt)
+        self.numbers.dissipated += self._released(points, surface, self.numbers.last)
         self.active, self.near = self.coming, None
         self.touchable = np.unique(self.corner[self.active > 0.0])
-        if not is_first:
-            after, _, _ = self._measure(points, surface.velocity, 0.0)
-            self.numbers.dissipated -= released_energy(points, surface, after, dt)
+        self.numbers.dissipated -= self._released(points, surface, 0.0)
+
+    def _released(self, points: Points, surface: Surface, since: float) -> float:
+        """Energy [J] of all normal springs, as places have changed for a time [s].
+
+        It is 0 in the first step, when nothing has been touched yet.
+        """
+        if self.numbers.last == 0.0:
+            return 0.0
+        near, _, _ = self._measure(points, surface.velocity, since)
+        return float(released_energy(points, surface, near, self.numbers.last))
 
     def _measure(self, points: Points, moving: Array, dt: float) -> tuple[Near, float, float]:
         """Faces near particles with gaps and weights as they are now, after a step of dt [s].
@@ -189,7 +211,7 @@ class PenaltyContact:
         Returns also the time [s] of `_list`, and the largest depth of `measure`.
         """
         near, apart = self._list(points, moving, dt)
-        places = self.corner, self.position, self.across, 2.0 * self.radius, self.slack
+        places = self.corner, self.position, self.across, 2.0 * self.radius, self.slack, self.off
         return near, apart, measure(points.place, points.radius, near, *places)
 
     def _list(self, points: Points, moving: Array, dt: float) -> tuple[Near, float]:

@@ -213,10 +213,11 @@ def normal_at(x, room, out):  # type: ignore[no-untyped-def]
 
 
 @njit(**LANEWISE)
-def gap_of(p, x, radius, room, n):  # type: ignore[no-untyped-def]
+def gap_of(p, x, radius, off, room, n):  # type: ignore[no-untyped-def]
     """Gap [m] between a particle and a face, ∞ where they cannot touch; direction into `n` (3,).
 
-    `room` has the nearest point and the tangents there, as `foot_within` leaves them.
+    They touch at a distance `off` [m] of the particle's place from the face. `room` has the nearest
+    point and the tangents there, as `foot_within` leaves them.
     Above the face the direction is that from its nearest point; a particle whose centre is below
     the face is pushed along the normal, if it is by a radius at most.
     """
@@ -229,8 +230,8 @@ def gap_of(p, x, radius, room, n):  # type: ignore[no-untyped-def]
         distance = math.sqrt(square)
         for d in range(3):
             n[d] = (p[d] - room[0, d]) / distance
-        gap = distance - radius
+        gap = distance - off
     else:
         beside = math.sqrt(max(square - above * above, 0.0))
-        gap = above - radius if beside <= ON * radius else math.inf
+        gap = above - off if beside <= ON * radius else math.inf
     return gap

@@ -1,7 +1,8 @@
-"""Contact: particles or bodies touch the faces of a mesh, and push it off by penalty forces.
+"""Contact: particles, bodies or a mesh touch the faces of a mesh, with penalty forces.
 
 The side with the particles gets the faces as they move, finds what touches and computes the forces,
-in each of its own steps; the mesh gets their reaction at its nodes. So friction has its history
+in each of its own steps; the mesh gets their reaction at its nodes. Of two meshes one has points on
+its faces in the place of particles. So friction has its history
 where state is saved, and both sides get the same impulse, at any number of steps. The link names
 the coefficients; it computes nothing but the closing of faces.
 """
@@ -43,30 +44,33 @@ WHY = (
 
 @parameters
 class ContactKeys:
-    """Particles or bodies touch the faces of a mesh.
+    """Particles, bodies or a mesh touch the faces of a mesh.
 
     Parameters
     ----------
     between
-        The particles or bodies, and the mesh, in either order.
+        The particles or bodies, and the mesh, in either order. Of two meshes the side with
+        `contact_with_faces` computes the forces; if both have it, the first.
     friction : 1
         Coulomb's coefficient.
     stiffness : 1
         Scale of the stiffness (SLSFAC). At 1 a contact of particles gives way as much as one layer
-        of particles and one layer of elements under the same pressure, and spheres follow Hertz.
+        of particles and one layer of elements under the same pressure, two meshes as one layer of
+        each, and spheres follow Hertz.
     safety : 1
         Share of the predicted stable step of contact that is used.
     points_across : 1
-        Points across a particle, along both sides, that bear its force on the faces below them.
-        With 3 flat bodies press alike on faces that the spacing does not divide; it takes more
-        time. It must be 1 for spheres.
+        Points across a particle, along both sides, that bear its force on the faces below them; 1
+        if not given. With 3 flat bodies press alike on faces that the spacing does not divide; it
+        takes more time. It must be 1 for spheres. Of two meshes: points of one across a face of
+        the other, 4 if not given.
     """
 
     between: Between
     friction: NotNegative = 0.0
     stiffness: Positive = 1.0
     safety: Positive = 0.9
-    points_across: Annotated[int, Field(ge=1, le=4)] = 1
+    points_across: Annotated[int, Field(ge=1, le=4)] | None = None
 
 
 class Coefficients(NamedTuple):
@@ -75,13 +79,14 @@ class Coefficients(NamedTuple):
     friction: float
     stiffness: float
     safety: float
-    points: int
+    points: int  # 0: as many as the component takes by itself
 
 
 @with_keys(ContactKeys)
 def make(name: str, keys: ContactKeys, ports: Mapping[str, Ports]) -> Link:
     """Make a link with its coefficients."""
-    coefficients = Coefficients(keys.friction, keys.stiffness, keys.safety, keys.points_across)
+    points = keys.points_across or 0
+    coefficients = Coefficients(keys.friction, keys.stiffness, keys.safety, points)
     return join(name, keys.between, ports, coefficients)
 
 
@@ -176,6 +181,7 @@ class Contact(Link):
         count, of = len(corner), self.coefficients
         static = {
             "corner": corner,
+            "width": widths(mesh["start"], corner),
             "friction": np.full(count, of.friction),
             "stiffness": np.full(count, of.stiffness),
             "safety": np.array([of.safety]),
@@ -200,6 +206,12 @@ class Contact(Link):
 
         taken = {f"{PLANAR_CONTACT_FACES.name}.{key}": array for key, array in static.items()}
         return Binding({self.particles: taken}, (move, load)[: len(self.transfers)])
+
+
+def widths(node: Array, corner: Array) -> Array:
+    """Length (m,) m of the longest side of faces, closed, of their nodes at (k, 3) m."""
+    x = node[corner.astype(np.int64)]
+    return np.asarray(np.linalg.norm(x - np.roll(x, 1, axis=1), axis=2).max(axis=1, initial=0.0))
 
 
 def closed(face: Array) -> Array:

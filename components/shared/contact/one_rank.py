@@ -1,0 +1,14 @@
+"""Contact with a partner's faces on one rank alone."""
+
+from quintet.interfaces.component import Resources
+from quintet.interfaces.errors import SceneError
+
+
+def require_one_rank(what: str, resources: Resources) -> None:
+    """Raise SceneError where what touches faces, ``"bodies"``, is shared among ranks."""
+    communicator = resources.communicator
+    if communicator is not None and communicator.size > 1:
+        raise SceneError(
+            f"contact_with_faces must be false of {what} on {communicator.size} ranks; it is true. "
+            "Take one rank and several threads."
+        )

@@ -1,0 +1,1 @@
+"""Two bars of finite elements strike each other end to end: face to face contact."""
