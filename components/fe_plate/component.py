@@ -362,7 +362,8 @@ class FePlate(Component):
 
     def notes(self) -> tuple[str, ...]:
         """Sizes of meshes from files and what of them is left out; integration in thin parts."""
-        return (*self.notes_of_mesh, *integration_notes(self.params))
+        notes = *self.notes_of_mesh, *integration_notes(self.params)
+        return (*notes, self.touching.note) if self.touching and self.touching.note else notes
 
     def view(self) -> Fields:
         """Outer faces with velocity, stress, plastic strain and temperature."""

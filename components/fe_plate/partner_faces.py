@@ -47,7 +47,15 @@ class PartnerFaces:
         across = int(static["contact_faces.points"].max()) or ACROSS
         distance = float(np.median(static["contact_faces.width"])) / across  # m
         start, corner = surface["start"], corners(surface["corner"])
-        self.face, weight, self.area = surface_points(start, corner, distance)
+        several = points_along(start, corner, distance)
+        most = int(several.max(initial=0))
+        self.note = ""
+        if most > MOST:
+            self.note = (
+                f"contact: faces need {most} points along a side, {across} across a face of the "
+                f"partner, and have {MOST}. Set contact_with_faces in the finer mesh, not in this."
+            )
+        self.face, weight, self.area = surface_points(start, corner, np.minimum(several, MOST))
         count = len(self.face)
         begin, nodes = np.arange(0, 4 * count + 1, 4), corner[self.face].ravel()
         self.shares = csr_array((weight.ravel(), nodes, begin), shape=(count, len(start)))
@@ -104,8 +112,8 @@ class PartnerFaces:
         )  # fmt: skip
 
 
-def surface_points(start: Array, corner: Whole, distance: float) -> tuple[Whole, Array, Array]:
-    """Points of faces, at most a distance [m] from each other: midpoints of equal cells.
+def points_along(start: Array, corner: Whole, distance: float) -> Whole:
+    """Points (2, f) along ξ and η of faces, at most a distance [m] from each other; 1 across edges.
 
     Parameters
     ----------
@@ -114,6 +122,31 @@ def surface_points(start: Array, corner: Whole, distance: float) -> tuple[Whole,
     corner : (f, 4) int array
         Of the faces, closed.
     distance : float, m
+    """
+    x = start[corner]
+    side = np.linalg.norm(np.roll(x, -1, axis=1) - x, axis=2)  # m: a-b, b-c, c-d, d-a
+    along, across = np.maximum(side[:, 0], side[:, 2]), np.maximum(side[:, 1], side[:, 3])
+    several = np.ceil(np.stack([along, across]) / distance - 1e-9).astype(np.int64)
+    several[1] = np.where(is_edge(corner), 1, several[1])
+    return np.maximum(several, np.where(is_edge(corner), [[FEWEST], [1]], FEWEST))
+
+
+def is_edge(corner: Whole) -> Array:
+    """Whether faces (f, 4), closed, are edges, which go forth and back."""
+    return np.asarray(corner[:, 0] == corner[:, 3])
+
+
+def surface_points(start: Array, corner: Whole, several: Whole) -> tuple[Whole, Array, Array]:
+    """Points of faces: midpoints of equal cells.
+
+    Parameters
+    ----------
+    start : (k, 3) float array, m
+        Nodes.
+    corner : (f, 4) int array
+        Of the faces, closed.
+    several : (2, f) int array
+        Points along ξ and η.
 
     Returns
     -------
@@ -123,23 +156,16 @@ def surface_points(start: Array, corner: Whole, distance: float) -> tuple[Whole,
     area : (p,) float array, m2
         Of its cell; of edges, 1 m deep.
     """
-    x = start[corner]
-    side = np.linalg.norm(np.roll(x, -1, axis=1) - x, axis=2)  # m: a-b, b-c, c-d, d-a
-    is_edge = corner[:, 0] == corner[:, 3]
-    along, across = np.maximum(side[:, 0], side[:, 2]), np.maximum(side[:, 1], side[:, 3])
-    cells = np.stack([along, across]) / distance
-    several = np.clip(np.ceil(cells - 1e-9), FEWEST, MOST).astype(np.int64)  # (2, f)
-    several[1, is_edge] = 1
     count = several.prod(axis=0)
     face = np.repeat(np.arange(len(corner)), count)
     number = np.arange(len(face)) - np.repeat(np.cumsum(count) - count, count)
     local = number % several[0, face], number // several[0, face]
     xi, eta = ((2 * n + 1) / of - 1.0 for n, of in zip(local, several[:, face], strict=True))
-    slopes = derivatives(xi, eta)
-    along_xi, along_eta = (
-        at_points(slope, x[face]) * (2.0 / of)[:, None]
+    x, slopes = start[corner[face]], derivatives(xi, eta)
+    along, across = (
+        at_points(slope, x) * (2.0 / of)[:, None]
         for slope, of in zip(slopes, several[:, face], strict=True)
     )
-    area = np.linalg.norm(np.cross(along_xi, along_eta), axis=1)
-    edge = DEPTH * np.linalg.norm(along_xi, axis=1)
-    return face, bilinear(xi, eta), np.where(is_edge[face], edge, area)
+    area = np.linalg.norm(np.cross(along, across), axis=1)
+    edge = DEPTH * np.linalg.norm(along, axis=1)
+    return face, bilinear(xi, eta), np.where(is_edge(corner)[face], edge, area)

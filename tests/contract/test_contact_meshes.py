@@ -41,7 +41,7 @@ def _gauges(edge, across, planar, z):
 
 def _pushing(folder, across, planar):
     """Two equal bars of unlike meshes that push each other with ρ c v/2."""
-    edge, length, layers = 1.2, 1.2, 12
+    edge, length, layers = 1.2, 2.0, 20
     deep, z = 1.0 if planar else edge, 0.5 * length / layers
     bars = []
     for bottom, count, speed in ((GAP, across[0], -SPEED), (-length, across[1], 0.0)):
@@ -109,53 +109,46 @@ def test_the_ledger_counts_the_same_work_on_both_meshes(tmp_path):
     assert residuals[1] < 0.65 * residuals[0]
 
 
-def _plane_bars(folder, touching="upper", **link):
-    upper = bar([0.0, 0.0, GAP], [0.3, 1.0, GAP + 0.3], [3, 1, 3], planar=True, courant=9.0)
-    lower = bar([0.0, 0.0, -0.3], [0.3, 1.0, 0.0], [2, 1, 3], planar=True, courant=9.0)
-    upper["parts"][0]["velocity"] = [0.0, 0.0, -SPEED]
-    trace = couple(folder, upper, lower, 0.15, touching, stiffness=30.0, **link)
-    return trace.energy() / trace.energies[0]
+def _sliding(folder, gravity, speed, end, mu=0.3):
+    """Times [s] and velocities [m/s] along x of a block of elements on a clamped slab; the run.
 
-
-@pytest.mark.parametrize("touching", ["upper", "lower"])
-def test_stiff_contact_of_meshes_is_stable_up_to_the_predicted_step(tmp_path, touching):
-    assert _plane_bars(tmp_path, touching, safety=1.0) == pytest.approx(1.0, abs=0.01)
-    assert not _plane_bars(tmp_path, touching, safety=1.2) < 1.1
-
-
-def _sliding(folder, gravity, velocity, end, mu=0.3):
-    """A block of elements on a clamped slab, pressed in by its weight at the start."""
+    It is pressed in by its weight at the start; damping ends its bouncing.
+    """
     stiff = {**SOFT, "poissons_ratio": 0.0}
-    depth = 0.3 * 1000.0 * 0.2 / 1e5  # m, of the springs: p (h/M + h/M)
-    block = bar([0.2, 0.0, -depth], [0.5, 1.0, 0.3 - depth], [3, 1, 3], planar=True)
+    depth = 0.1 * 1000.0 * 0.2 / 1e5  # m, of the springs: p (h/M + h/M)
+    block = bar([0.2, 0.0, -depth], [0.6, 1.0, 0.1 - depth], [4, 1, 1], planar=True)
     slab = bar([0.0, 0.0, -0.2], [1.6, 1.0, 0.0], [13, 1, 2], planar=True)
-    block |= {"gravity": gravity, "mass_damping": 0.0, "fixed": []}
-    block["parts"][0] |= {"velocity": velocity, "material": stiff}
+    block |= {"gravity": gravity, "fixed": [], "gauges": {"part_gauge": True}}
+    block["parts"][0] |= {"velocity": [speed, 0.0, 0.0], "material": stiff}
     slab["parts"][0]["material"] = stiff
     slab["fixed"] = [{"lowest": [0.0, 0.0, -0.2], "highest": [1.6, 1.0, -0.2]}]
-    return couple(folder, block, slab, end, friction=mu)
+    for side in (block, slab):
+        side["stiffness_damping"] = 3e-3
+    trace = couple(folder, block, slab, end, friction=mu)
+    return trace.times, trace.history("upper", "part_gauge.velocity")[:, 0, 0], trace
 
 
 def test_a_block_of_elements_slides_to_rest_by_friction(tmp_path):
     mu, end = 0.3, 1.2
-    totals = _sliding(tmp_path, [0.0, 0.0, -1.0], [1.0, 0.0, 0.0], end).components["upper"].totals()
+    times, velocity, trace = _sliding(tmp_path, [0.0, 0.0, -1.0], 1.0, end)
+    assert -np.polyfit(times, velocity, 1)[0] == pytest.approx(mu, rel=0.01)
+    totals = trace.components["upper"].totals()
     speed = totals.momentum / totals.mass
-    assert (1.0 - speed[0]) / end == pytest.approx(mu, rel=0.02)
     # The impulse of the normal force, over the mass: the block bounces.
     assert 1.0 - speed[0] == pytest.approx(mu * (end + speed[2]), rel=0.01)
     dissipated = 0.5 * totals.mass * (1.0 - speed[0] ** 2)
     assert totals.dissipated == pytest.approx(dissipated, rel=0.02)
 
 
-@pytest.mark.parametrize(("slope", "slides"), [(0.25, False), (0.35, True)])
+@pytest.mark.parametrize(("slope", "slides"), [(0.27, False), (0.33, True)])
 def test_a_block_sticks_below_the_angle_of_friction_and_slides_above(tmp_path, slope, slides):
-    end = 0.6
-    trace = _sliding(tmp_path, [slope, 0.0, -1.0], [0.0, 0.0, 0.0], end)
-    moved = trace.components["upper"].totals().momentum[0] / trace.components["upper"].totals().mass
+    times, velocity, _ = _sliding(tmp_path, [slope, 0.0, -1.0], 0.0, 0.8)
+    late = times > 0.4
     if slides:
-        assert moved / end == pytest.approx(slope - 0.3, rel=0.1)
+        slope_of_velocity = np.polyfit(times[late], velocity[late], 1)[0]
+        assert slope_of_velocity == pytest.approx(slope - 0.3, rel=0.1)
     else:
-        assert abs(moved) < 0.1 * slope * end * 0.1
+        assert np.abs(velocity[late]).mean() < 1e-3 * slope * 0.8
 
 
 def test_contact_goes_on_where_the_mesh_that_computes_erodes(tmp_path):

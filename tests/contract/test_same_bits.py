@@ -12,6 +12,7 @@ import laboratory
 import numpy as np
 import pytest
 from test_contact_erosion import digging
+from test_contact_meshes import GAP, SPEED, bar
 from test_glued_chains import TRANSIT
 from test_groups import COMPONENTS as MASSES
 from test_groups import LINKS as RIDES
@@ -61,7 +62,19 @@ def _eroding(folder):
     return digging(folder, layers=4, end=0.1, output={"snapshots": 0.02})
 
 
-SCENES = pytest.mark.parametrize("make", [_glued, _groups])
+def _meshes(folder):
+    """Contact of two meshes, of which one computes."""
+    upper = bar([0.0, 0.0, GAP], [0.3, 1.0, GAP + 0.3], [3, 1, 3], planar=True)
+    lower = bar([0.0, 0.0, -0.3], [0.3, 1.0, 0.0], [2, 1, 2], planar=True)
+    upper |= {"contact_with_faces": True}
+    upper["parts"][0]["velocity"] = [SPEED, 0.0, -SPEED]
+    link = {"kind": "contact", "between": ["upper", "lower"], "friction": 0.3}
+    components = {"upper": upper, "lower": lower}
+    settings = {"order": ["upper", "lower"], "output": {"snapshots": 0.02}}
+    return laboratory.scene(folder, components, link, end=0.1, **settings)
+
+
+SCENES = pytest.mark.parametrize("make", [_glued, _groups, _meshes])
 
 
 def _run(path, out, *arguments, threads="1"):
@@ -95,7 +108,7 @@ def test_every_transport_gives_the_same_bits(tmp_path, run_alone, make, transpor
     assert compare(memory, _run(path, tmp_path / transport, "--transport", transport)) is None
 
 
-@pytest.mark.parametrize("make", [_glued, _groups, _eroding])
+@pytest.mark.parametrize("make", [_glued, _groups, _eroding, _meshes])
 def test_from_a_snapshot_it_goes_on_with_the_same_bits(tmp_path, monkeypatch, make):
     monkeypatch.setattr(snapshots, "remove", lambda paths: None)
     monkeypatch.syspath_prepend(tmp_path)
@@ -113,11 +126,11 @@ def test_from_a_snapshot_it_goes_on_with_the_same_bits(tmp_path, monkeypatch, ma
             assert (first / name).read_bytes() == (resumed / name).read_bytes()
 
 
-@pytest.mark.parametrize("make", [_glued, _serial, _eroding])
+@pytest.mark.parametrize("make", [_glued, _serial, _eroding, _meshes])
 def test_beside_a_replay_the_others_get_the_same_bits(tmp_path, run_alone, make):
     """Integrals are handed on as they were recorded, windows follow the recorded steps."""
     path, memory = run_alone(make)
-    replaced = {_glued: "rods", _serial: "slow", _eroding: "plate"}[make]
+    replaced = {_glued: "rods", _serial: "slow", _eroding: "plate", _meshes: "lower"}[make]
     replayed = _run(path, tmp_path / "other", "--swap", f"{replaced}=replay@{memory}")
     with (
         h5py.File(memory / "recording.h5") as first,

@@ -302,7 +302,13 @@ class PenaltyContact:
     def warnings(self) -> dict[str, str]:
         """Warn of particles that passed through faces, or nearly did."""
         texts = {}
-        if self.numbers.deepest > 1.0:
+        if self.numbers.deepest > 1.0 and self.off == 0.0:
+            texts["contact"] = (
+                "faces must stay outside of the faces that they touch; one went "
+                f"{0.5 * self.numbers.deepest:.3g} of the thickness of its element deep, and "
+                "beyond 1 it would pass through. Raise the link's stiffness, or refine both sides."
+            )
+        elif self.numbers.deepest > 1.0:
             texts["contact"] = (
                 "particles must stay outside of the faces that they touch; one went "
                 f"{self.numbers.deepest:.3g} of its radii deep, and beyond 2 it would pass "

@@ -1,10 +1,19 @@
 """Points of a surface, by which it touches the faces of another mesh."""
 
+import json
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
+from pydantic import TypeAdapter
 
-from quintet.components.fe_plate.partner_faces import PartnerFaces, surface_points
+from quintet.components.fe_plate.component import FePlate
+from quintet.components.fe_plate.features import partner_faces
+from quintet.components.fe_plate.params import FePlateParams
+from quintet.components.fe_plate.partner_faces import PartnerFaces, points_along, surface_points
 from quintet.components.shared.geometry.face_projection import corners
+from quintet.interfaces.component import Resources
+from quintet.interfaces.errors import SceneError, StepError
 
 SQUARE = np.array([[0, 0, 0], [2, 0, 0], [2, 3, 0], [0, 3, 0]], float)
 FACES = {
@@ -18,7 +27,7 @@ FACES = {
 def test_points_of_a_face_have_its_area_and_lie_within_a_distance(name):
     face, area, count = FACES[name]
     corner = corners(np.array(face, float))
-    owner, weight, areas = surface_points(SQUARE, corner, 1.0)
+    owner, weight, areas = surface_points(SQUARE, corner, points_along(SQUARE, corner, 1.0))
     assert (owner == 0).all() and len(owner) == count
     assert areas.sum() == pytest.approx(area, rel=1e-12)
     np.testing.assert_allclose(weight.sum(axis=1), 1.0)
@@ -28,13 +37,14 @@ def test_points_of_a_face_have_its_area_and_lie_within_a_distance(name):
         np.testing.assert_allclose(loads, area / len(loads))
 
 
-def _above(mass, gap=-0.1):
+def _above(mass, gap=-0.1, width=1.0):
     """Two squares of 1 m², the upper one of masses (4,) kg, that overlap; Pa, m."""
     node = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], float)
     layer = {key: np.array([number]) for key, number in
              {"bulk": 2.0 / 3.0, "shear": 1.0, "thickness": 1.0}.items()}  # fmt: skip
     static = {
-        "corner": np.array([[0.0, 1.0, 2.0, 3.0]]), "mass": np.full(4, 1e9), "width": np.ones(1),
+        "corner": np.array([[0.0, 1.0, 2.0, 3.0]]), "mass": np.full(4, 1e9),
+        "width": np.array([width]),
         "friction": np.zeros(1), "stiffness": np.ones(1), "safety": np.ones(1),
         "points": np.zeros(1), "step": np.array([1e9]), **layer,
     }  # fmt: skip
@@ -87,3 +97,74 @@ def test_points_of_faces_that_are_not_open_do_not_touch():
     assert not closed.any() and faces.penalty.numbers.energy == 0.0
     # What the springs held is dissipated, with the half of the last kick that was to come.
     assert faces.penalty.numbers.dissipated == pytest.approx(held, rel=0.01)
+
+
+def test_points_that_would_be_too_many_are_said_to_be_fewer():
+    assert not _above(np.ones(4))[0].note
+    faces, _ = _above(np.ones(4), width=0.1)
+    assert "faces need 40 points along a side, 4 across a face" in faces.note
+    assert "and have 16. Set contact_with_faces in the finer mesh" in faces.note
+    assert len(faces.mass) == 16 * 16
+
+
+def test_a_face_that_nearly_passes_through_another_is_warned_of():
+    faces, place = _above(np.ones(4), gap=-0.6)
+    faces.push(place, np.zeros((4, 3)), None, 0.01)
+    assert (
+        "one went 0.6 of the thickness of its element deep" in faces.penalty.warnings()["contact"]
+    )
+
+
+def test_a_structure_on_several_ranks_touches_no_faces():
+    several = Resources(communicator=SimpleNamespace(size=2))
+    rule = "contact_with_faces must be false of a structure on 2 ranks; it is true. Take one rank"
+    with pytest.raises(SceneError, match=rule):
+        partner_faces({}, frozenset({"contact_faces"}), {}, np.zeros((0, 3)), several)
+
+
+def _held(share):
+    """Largest velocity after and before 300 steps of a bar pressed on stiff springs of contact.
+
+    The bar is held at its top, and its steps are a share of the predicted one.
+    """
+    soft = {"density": 1000.0, "youngs_modulus": 1e5, "poissons_ratio": 0.0}
+    part = {"lowest": [0.0] * 3, "highest": [0.2, 1.0, 0.2], "elements": [2, 1, 2],
+            "material": soft}  # fmt: skip
+    low, high = [0.0, 0.0, 0.2], [0.2, 1.0, 0.2]
+    document = {
+        "parts": [part], "dimensions": 2, "contact_with_faces": True, "integration": "reduced",
+        "viscosity_linear": 0.0, "viscosity_quadratic": 0.0,
+        "fixed": [{"lowest": low, "highest": high},
+                  {"lowest": [0.0] * 3, "highest": high, "directions": ["x"]}],
+        "coupled_faces": [{"lowest": [0.0] * 3, "highest": [0.2, 1.0, 0.0]}],
+    }  # fmt: skip
+    bar = FePlate(TypeAdapter(FePlateParams).validate_json(json.dumps(document)))
+    layer = {"bulk": [1e5 / 3.0], "shear": [5e4], "thickness": [0.1], "width": [0.1]}
+    numbers = {"friction": [0.0], "stiffness": [30.0], "safety": [1.0], "points": [0.0]}
+    static = {"corner": [[1.0, 0.0, 0.0, 1.0]], "mass": [1e9, 1e9], "step": [1e9]} | layer | numbers
+    fields = {f"contact_faces.{key}": np.array(array) for key, array in static.items()}
+    bar.bind(fields, frozenset({"contact_faces", "contact_activity", "contact_load"}))
+    ends = np.array([[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0]])
+
+    def step(rise, dt):
+        place = ends + np.array([0.0, 0.0, rise])
+        bar.take({"contact_faces.position": place, "contact_activity.active": np.ones(1)})
+        bar.step(dt)
+
+    for k in range(600):  # slowly, over 1.2 s: waves cross the bar in 0.02 s
+        step(2e-3 * np.sin(0.5 * np.pi * k / 600) ** 2, 2e-3)
+    assert bar.touching.penalty.numbers.points > 0.0
+    before = np.abs(bar.state.velocity).max()
+    bar.state.velocity[:, 2] += 1e-4 * before * bar.model.free[:, 2]
+    dt = share * bar.touching.penalty.stable_step(bar.bound)
+    try:
+        for _ in range(300):
+            step(2e-3, dt)
+    except StepError:  # an element is inside out
+        return np.inf
+    return np.abs(bar.state.velocity).max() / before
+
+
+def test_a_bar_on_stiff_contact_is_stable_up_to_the_predicted_step():
+    assert _held(0.97) < 10.0
+    assert _held(1.05) > 100.0
