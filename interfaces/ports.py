@@ -114,11 +114,11 @@ NODE_MASS = Port("node_mass", fields=(Field("added", (), "kg"),))
 
 # Contact: particles, bodies or a mesh touch the faces of a mesh. The mesh gives its faces and what
 # the stiffness of contact follows from; the other side computes the forces and gives their reaction
-# on the nodes. Forces follow from places at the begin of a window, at which the mesh is told of them;
-# velocities cross as displacements over the last window, so that work is counted by what moved.
-# Meshes that may erode take contact's forces by a port of their own. When `sample` is asked for
-# `inner` (1), such a mesh answers with all static fields of CONTACT_SURFACE: first the nodes and
-# faces that it described, then those that erosion may open. OPEN_FACES has a row for each face.
+# on the nodes. Forces follow from places at the begin of a window, at which the mesh is told of
+# them; velocities cross as displacements over the last window, so that work is counted by what
+# moved. Meshes that may erode take contact's forces by a port of their own. When `sample` is asked
+# for `inner` (1), such a mesh answers with all static fields of CONTACT_SURFACE: first the nodes
+# and faces that it described, then those that erosion may open. OPEN_FACES has a row for each face.
 PLACE = replace(POSITION, rate="")
 LAYER = (
     Field("mass", (), "kg"),  # of each node

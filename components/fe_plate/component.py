@@ -302,7 +302,18 @@ class FePlate(Component):
         if REACTION in wanted:
             penalty = self.touching.penalty if self.touching else None
             values[REACTION] = penalty.reaction.copy() if penalty else np.zeros((0, 3))
-        return values | readings(self.measured, self.built, self.state, wanted, self.all_ranks)
+        if not wanted - values.keys():  # of gauges none
+            return values
+        state = self.state._replace(velocity=self._velocity())
+        return values | readings(self.measured, self.built, state, wanted, self.all_ranks)
+
+    def _velocity(self) -> Array:
+        """Velocities (n, 3) m/s at the present time; early loads are those of the last step."""
+        if not self.kicks_early:
+            return self.state.velocity
+        velocity = self.state.velocity.copy()
+        velocity[self.loaded.rows] += self.half_kick
+        return velocity
 
     def save(self) -> Fields:
         """Copy out all state."""
@@ -368,7 +379,7 @@ class FePlate(Component):
     def view(self) -> Fields:
         """Outer faces with velocity, stress, plastic strain and temperature."""
         nodes, elements = self.all_ranks.nodes, self.all_ranks.elements
-        motion_of = np.hstack([self.state.position[nodes.rows], self.state.velocity[nodes.rows]])
+        motion_of = np.hstack([self.state.position[nodes.rows], self._velocity()[nodes.rows]])
         gathered = nodes.gather(motion_of), elements.gather(shown(self.places, self.state))
         mesh = self.all_ranks.mesh_to_show(self.mesh, self.built)
         return {} if self.all_ranks.rank else view(mesh, *gathered)

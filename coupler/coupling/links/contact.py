@@ -1,10 +1,10 @@
 """Contact: particles, bodies or a mesh touch the faces of a mesh, with penalty forces.
 
 The side with the particles gets the faces as they move, finds what touches and computes the forces,
-in each of its own steps; the mesh gets their reaction at its nodes. Of two meshes one has points on
-its faces in the place of particles. So friction has its history
-where state is saved, and both sides get the same impulse, at any number of steps. The link names
-the coefficients; it computes nothing but the closing of faces.
+in each of its own steps; the mesh gets their reaction at its nodes. So friction has its history
+where state is saved, and both sides get the same impulse, at any number of steps. Of two meshes one
+has points on its faces in the place of particles. The link names the coefficients; it computes
+nothing but the closing of faces.
 """
 
 from collections.abc import Mapping
