@@ -8,6 +8,7 @@ import math
 
 from numba import njit
 
+from quintet.components.dem_bodies.kernels.ball_laws import kinematics, relative_depth
 from quintet.components.dem_bodies.kernels.batch import (
     BATCH,
     BEFORE,
@@ -65,31 +66,20 @@ from quintet.components.dem_bodies.state import (
     State,
 )
 from quintet.components.shared.numba_options import INNER
-from quintet.components.shared.rotations import Vector, axpy, cross, dot, scaled, sub
-
-
-@njit(**INNER)
-def velocity_at_contact(
-    v: Vector, ω_i: Vector, ω_j: Vector, n: Vector, i: float, j: float
-) -> Vector:
-    """Velocity [m/s] of a point at the arm -i n over another's at the arm j n."""
-    return sub(v, cross(axpy(j, ω_j, scaled(i, ω_i)), n))
+from quintet.components.shared.rotations import cross, dot, scaled
 
 
 @njit(**INNER)
 def pair_kinematics(count: int, batch: Numbers) -> None:
     """Normal, depth and its roots, and velocities of the point of contact."""
     for c in range(count):
-        d, radii, radius = column(batch, R_IJ + c), batch[RADII + c], batch[RADIUS_I + c]
-        distance = math.sqrt(dot(d, d))
-        n, depth = scaled(1.0 / max(distance, LEAST), d), radii - distance
-        root = math.sqrt(max(depth, 0.0))
-        i, j = radius - 0.5 * depth, radii - radius - 0.5 * depth
-        ω_i, ω_j = column(batch, OMEGA_I + c), column(batch, OMEGA_J + c)
-        end_ω_i, end_ω_j = column(batch, END_OMEGA_I + c), column(batch, END_OMEGA_J + c)
-        end = velocity_at_contact(column(batch, END_V_IJ + c), end_ω_i, end_ω_j, n, i, j)
+        n, depth, root, mean, end = kinematics(
+            column(batch, R_IJ + c), batch[RADII + c], batch[RADIUS_I + c],
+            column(batch, V_IJ + c), column(batch, END_V_IJ + c),
+            column(batch, OMEGA_I + c), column(batch, OMEGA_J + c),
+            column(batch, END_OMEGA_I + c), column(batch, END_OMEGA_J + c),
+        )  # fmt: skip
         set_column(batch, R_IJ + c, n)
-        mean = velocity_at_contact(column(batch, V_IJ + c), ω_i, ω_j, n, i, j)
         set_column(batch, V_IJ + c, mean)
         set_column(batch, END_V_IJ + c, end)
         batch[DEPTH + c], batch[ROOT + c], batch[QUARTER + c] = depth, root, math.sqrt(root)
@@ -133,9 +123,9 @@ def pair_forces(count: int, batch: Numbers, dt: float) -> None:
         batch[BEFORE + c] = batch[INVERSE_ROOT + c] if depth > 0.0 else 0.0
         set_column(batch, TORQUE_I + c, scaled(radius - 0.5 * depth, t))
         set_column(batch, TORQUE_J + c, scaled(other - 0.5 * depth, t))
-        low = min(radius, other) if other > 0.0 else radius
         batch[LEAST_GAP + c] = min(batch[LEAST_GAP + c], -depth)
-        batch[MOST_DEPTH + c] = max(batch[MOST_DEPTH + c], depth / low)
+        relative = relative_depth(depth, radius, other)
+        batch[MOST_DEPTH + c] = max(batch[MOST_DEPTH + c], relative)
         batch[MOST_STIFFNESS + c] = max(batch[MOST_STIFFNESS + c], constants[5] * root)
         batch[ENERGY + c] += energy
 

@@ -3,6 +3,7 @@
 import numpy as np
 from numba import njit
 
+from quintet.components.dem_bodies.kernels.ball_laws import from_plane
 from quintet.components.dem_bodies.kernels.geometry import (
     row_vector,
     set_row_vector,
@@ -22,7 +23,7 @@ from quintet.components.dem_bodies.state import (
     Short,
 )
 from quintet.components.shared.numba_options import EXACT, INNER
-from quintet.components.shared.rotations import Vector, cross, dot, scaled, sub
+from quintet.components.shared.rotations import Vector, cross, scaled, sub
 
 BATCH = 48  # pairs that are computed at once; all their numbers fit in the nearest cache
 # A batch has columns, one for each number of the pairs: r_ij, which becomes the normal; velocities
@@ -66,9 +67,7 @@ def load_pairs(
         if b <= ground:
             d = sub(x, vector(motion, j))
         else:
-            n = row_vector(plane, b - rows)
-            # Who is below the plane is as deep as can be.
-            d = scaled(max(dot(n, x) - plane[b - rows, 3], 1e-9 * radius), n)
+            d = from_plane(x, radius, row_vector(plane, b - rows), plane[b - rows, 3])
         set_column(batch, R_IJ + c, d)
         batch[RADIUS_I + c] = radius
         batch[RADII + c] = radius + motion[j + RADIUS]  # the ground has none

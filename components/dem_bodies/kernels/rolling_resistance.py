@@ -65,6 +65,48 @@ def in_contact_plane(w: Vector, n: Vector) -> Vector:
 
 
 @njit(**INNER)
+def resistance(
+    spring: Vector, n: Vector, k_n: float, inverse_root: float, arm: float, inverse: float,
+    force: Vector, mean: Vector, end: Vector, dt: float,
+) -> tuple[Vector, Vector, float]:  # fmt: skip
+    """Moment on the first ball of a pair that touches, its elastic part, and its energy.
+
+    Parameters
+    ----------
+    spring : (3,) N m
+        Elastic moment of the last step.
+    n : (3,)
+        Unit normal, towards the first ball.
+    k_n : float, N/m^1.5
+        Of the pair, as `pair_constants` gives it.
+    inverse_root : float, m^-1/2
+        1/√δ.
+    arm : float, m
+        μ_r R*.
+    inverse : float, 1/(kg m²)
+        1/I_r.
+    force : (3,) N
+        On the first ball.
+    mean, end : (3,) rad/s
+        Relative angular velocity, the mean of the step and at its end.
+    dt : float, s
+
+    Returns
+    -------
+    moment, spring : (3,) N m
+    energy : float, J
+    """
+    stiffness = ROLLING_STIFFNESS * 1.5 * k_n / inverse_root * arm * arm
+    damping = 2.0 * ROLLING_DAMPING * math.sqrt(stiffness / inverse)
+    limit = arm * max(0.0, dot(force, n))
+    spring = rotate_tangential_force(spring, n, 1.0)
+    spring = axpy(-stiffness * dt, in_contact_plane(mean, n), spring)
+    dashpot = scaled(damping, in_contact_plane(end, n))
+    moment, spring = limit_rolling(spring, dashpot, limit)
+    return moment, spring, 0.5 * dot(spring, spring) / stiffness
+
+
+@njit(**INNER)
 def rolling_arm(model: Model, i: int, b: int, rows: int) -> float:
     """Return μ_r R* [m] of a ball and its partner: another ball, or beyond all rows a plane."""
     if b >= rows:
@@ -97,16 +139,13 @@ def rolling_moments(
         if arm == 0.0:
             continue
         n, c = contact_normal(model, motion, i, b), pairs.constants[pairs.constants_row[k]]
-        stiffness = ROLLING_STIFFNESS * 1.5 * c[0] / pairs.history[3, k] * arm * arm
         inverse = inverse_rolling_inertia(model, i) + inverse_rolling_inertia(model, j)
-        damping = 2.0 * ROLLING_DAMPING * math.sqrt(stiffness / inverse)
-        limit = arm * max(0.0, dot(row_vector(pairs.force, k), n))
         mean = sub(row_vector(motion, i, OMEGA), row_vector(motion, j, OMEGA))
         end = sub(row_vector(motion, i, END_OMEGA), row_vector(motion, j, END_OMEGA))
-        spring = rotate_tangential_force(row_vector(rolling_moment, k), n, 1.0)
-        spring = axpy(-stiffness * dt, in_contact_plane(mean, n), spring)
-        dashpot = scaled(damping, in_contact_plane(end, n))
-        moment, spring = limit_rolling(spring, dashpot, limit)
+        moment, spring, stored = resistance(
+            row_vector(rolling_moment, k), n, c[0], pairs.history[3, k], arm, inverse,
+            row_vector(pairs.force, k), mean, end, dt,
+        )  # fmt: skip
         for d in range(3):
             rolling_moment[k, d] = spring[d]
             load[i, 3 + d] += moment[d]
@@ -116,5 +155,5 @@ def rolling_moments(
                 load[j, 3 + d] -= moment[d]
             else:
                 sums[block, GROUND_LOAD + 3 + d] -= moment[d]
-        energy += 0.5 * dot(spring, spring) / stiffness
+        energy += stored
     sums[block, ELASTIC_ENERGY] += energy

@@ -2,6 +2,7 @@
 
 from numba import njit
 
+from quintet.components.dem_bodies.kernels.ball_laws import drifted, half_kick
 from quintet.components.dem_bodies.kernels.geometry import (
     quaternion,
     rotation_matrix,
@@ -11,7 +12,7 @@ from quintet.components.dem_bodies.kernels.geometry import (
     set_vector,
     vector,
 )
-from quintet.components.dem_bodies.kernels.kicks import kick, kick_body, kick_rotation, kick_work
+from quintet.components.dem_bodies.kernels.kicks import kick_body, kick_rotation
 from quintet.components.dem_bodies.kernels.locked_motion import rotate_locked, turns_evenly
 from quintet.components.dem_bodies.kernels.rigid_rotation import rotate_body, symmetric_product
 from quintet.components.dem_bodies.state import (
@@ -38,7 +39,7 @@ from quintet.components.dem_bodies.state import (
     Whole,
 )
 from quintet.components.shared.numba_options import INNER
-from quintet.components.shared.rotations import axpy, dot, rotated, scaled, sub, to_world
+from quintet.components.shared.rotations import axpy, dot, scaled, sub, to_world
 
 
 @njit(**INNER)
@@ -57,18 +58,20 @@ def drift_balls(
         m, c, to = COLUMNS * i, 6 * i, 6 * i if loaded else 0
         force, torque = vector(contact, c), vector(contact, c + 3)
         outer, twist = vector(load, to), vector(load, to + 3)
-        change = kick(half_gravity, half * inverse_mass[i], force, outer)
-        v, before = axpy(1.0, change, vector(motion, m + VELOCITY)), vector(motion, m + OMEGA)
-        ω = kick_rotation(before, half * inverse_moment[i], torque, twist)
-        work += kick_work(half, force, torque, v, change, before, ω)
-        load_work += kick_work(half, outer, twist, v, change, before, ω)
-        x = axpy(dt, v, vector(motion, m))
+        before = vector(motion, m + OMEGA)
+        v, ω, change, done, by_load = half_kick(
+            vector(motion, m + VELOCITY), before, half_gravity, half, inverse_mass[i],
+            inverse_moment[i], force, torque, outer, twist,
+        )  # fmt: skip
+        work, load_work = work + done, load_work + by_load
+        x, q, end_v, end_ω = drifted(
+            vector(motion, m), quaternion(orientation, 4 * i), v, change, before, ω, dt
+        )
         set_vector(motion, m, x)
         set_vector(motion, m + VELOCITY, v)
         set_vector(motion, m + OMEGA, ω)
-        set_vector(motion, m + END_VELOCITY, axpy(1.0, change, v))
-        set_vector(motion, m + END_OMEGA, sub(scaled(2.0, ω), before))
-        q = rotated(quaternion(orientation, 4 * i), dt * ω[0], dt * ω[1], dt * ω[2])
+        set_vector(motion, m + END_VELOCITY, end_v)
+        set_vector(motion, m + END_OMEGA, end_ω)
         set_quaternion(orientation, 4 * i, q)
         moved = sub(x, vector(listed, 3 * i))
         furthest = max(furthest, dot(moved, moved))
@@ -190,13 +193,13 @@ def end_kick_balls(
         m, c, to = COLUMNS * i, 6 * i, 6 * i if loaded else 0
         force, torque = vector(contact, c), vector(contact, c + 3)
         outer, twist = vector(load, to), vector(load, to + 3)
-        change = kick(half_gravity, half * inverse_mass[i], force, outer)
-        v, before = axpy(1.0, change, vector(motion, m + VELOCITY)), vector(motion, m + OMEGA)
-        ω = kick_rotation(before, half * inverse_moment[i], torque, twist)
+        v, ω, _, done, by_load = half_kick(
+            vector(motion, m + VELOCITY), vector(motion, m + OMEGA), half_gravity, half,
+            inverse_mass[i], inverse_moment[i], force, torque, outer, twist,
+        )  # fmt: skip
         set_vector(motion, m + VELOCITY, v)
         set_vector(motion, m + OMEGA, ω)
-        work += kick_work(half, force, torque, v, change, before, ω)
-        load_work += kick_work(half, outer, twist, v, change, before, ω)
+        work, load_work = work + done, load_work + by_load
         radius, ω2 = motion[m + RADIUS], dot(ω, ω)
         velocity2, rotation2 = max(velocity2, dot(v, v)), max(rotation2, radius * radius * ω2)
         centripetal = max(centripetal, radius * ω2)
