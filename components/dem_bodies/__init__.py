@@ -71,6 +71,8 @@ MANIFEST = Manifest(
     initial=initial,
     bench="quintet.components.dem_bodies.bench:cases",
     conform="quintet.components.dem_bodies.conform:cases",
+    opencl="quintet.components.dem_bodies.component:DemBodies",
+    opencl_limits="quintet.components.dem_bodies.opencl.refusal:refuse_what_needs_the_processor",
     shows=SHOWS,
     ranks=True,
 )

@@ -129,7 +129,7 @@ class DemBodies(Component):
         if self.faces:
             self.faces.kick(self.state, dt)
         if self.params.contact_forces:
-            self.state.previous_contact_load[:] = self.state.contact_load
+            self.stepping.keep_contact_loads()
         if self.timetable:
             self.timetable.advance(self.state, self.accumulated.time, dt)
         self._move(dt)
@@ -150,8 +150,8 @@ class DemBodies(Component):
 
     def check(self) -> None:
         """Refuse a body whose rotation is not finite."""
-        if self.stepping.is_alone:
-            diagnostics.check(self.state)
+        if self.stepping.is_alone and not self.stepping.is_finite():
+            diagnostics.check(self.stepping.whole()[1])
 
     def give(self, wanted: Keys) -> Fields:
         """Copy out the motion of all bodies, and the contacts and the front if they are wanted."""

@@ -31,6 +31,7 @@ def cases() -> tuple[ConformCase, ...]:
         {**second, "centre": [1.0, 2.0, 3.1001]},
     ]
     plane = {**boxes, "dimensions": 2, "bodies": [WEDGE, WHEEL]}
+    with_forces = {**balls, "contact_forces": True}
     return (
         _case("boxes", boxes),
         _case("boxes, contact forces", {**boxes, "contact_forces": True}),
@@ -38,7 +39,21 @@ def cases() -> tuple[ConformCase, ...]:
         _case("spheres that collide", strike, still=False, smooth=False),
         _on_a_face({**balls, "contact_with_faces": True, "planes": []}),
         _case("two dimensions", plane, forces=()),  # the plane takes the loads across it
+        *_on_devices(
+            _case("spheres, contact forces", with_forces),
+            _case("spheres that collide", strike, still=False, smooth=False),
+        ),
     )
+
+
+def _on_devices(*of_spheres: ConformCase) -> tuple[ConformCase, ...]:
+    """Cases of spheres on a device, where there is one."""
+    # Loads pyopencl where it is installed; these cases alone ask for it.
+    from quintet.components.shared.opencl.devices import is_any_there
+
+    if not is_any_there():
+        return ()
+    return tuple(replace(case, name=f"{case.name}, OpenCL", device="opencl") for case in of_spheres)
 
 
 def _at(z: float, body: dict[str, Any]) -> dict[str, Any]:

@@ -35,7 +35,7 @@ def stepping(
     solids: Sequence[Solid],
     resources: Resources,
 ) -> OneRank:
-    """What steps the rows, all of them or those of this rank, with the lists of their pairs.
+    """What steps the rows, here, on a device or of this rank, with the lists of their pairs.
 
     The skin follows the smallest contact radius. The edge radius of a sharp box, or of a thin
     plate, is no measure of how far it moves before it touches: lists would be renewed at every
@@ -43,6 +43,14 @@ def stepping(
     """
     skin = SKIN * min(map(contact_length, bodies.kinds, solids))
     balls, communicator = no_ball_pairs(model), resources.communicator
+    if resources.device != "cpu":
+        # Only bodies on a device load pyopencl.
+        from quintet.components.dem_bodies.opencl.one_device import DeviceLists, OneDevice
+        from quintet.components.dem_bodies.opencl.refusal import refuse_what_needs_the_processor
+
+        refuse_what_needs_the_processor(params, resources.device)
+        device_lists = DeviceLists(model, balls, skin, params.contact_forces)
+        return OneDevice(state, device_lists, resources)
     if communicator is None or communicator.size == 1:
         lists = ContactLists(model, balls, skin, params.contact_forces)
         return OneRank(state, lists, resources.threads)

@@ -15,6 +15,7 @@ J. Eng. Mech. 124 (1998) 285.
 
 import math
 
+import numpy as np
 from numba import njit
 
 from quintet.components.dem_bodies.kernels.geometry import row_vector
@@ -33,9 +34,10 @@ from quintet.components.dem_bodies.state import (
     BallPairs,
     Model,
     Numbers,
+    Short,
     State,
 )
-from quintet.components.shared.numba_options import INNER
+from quintet.components.shared.numba_options import EXACT, INNER
 from quintet.components.shared.rotations import Vector, axpy, dot, scaled, sub
 
 
@@ -115,6 +117,19 @@ def rolling_arm(model: Model, i: int, b: int, rows: int) -> float:
         other = model.material[b]
         radius = 1.0 / (1.0 / model.bounding_radius[i] + 1.0 / model.bounding_radius[b])
     return float(model.material_pairs[model.material[i], other, 4] * radius)
+
+
+@njit(**EXACT)
+def rolling_constants(model: Model, row: Short, partner: Short) -> Numbers:
+    """μ_r R* [m] and 1/I_r [1/(kg m²)] of pairs: (pairs, 2)."""
+    rows, ground = model.kind.shape[0], model.kind.shape[0] - 1
+    constants = np.empty((partner.shape[0], 2))
+    for k in range(partner.shape[0]):
+        i, b = row[k], partner[k]
+        inverse = inverse_rolling_inertia(model, i)
+        constants[k, 0] = rolling_arm(model, i, b, rows)
+        constants[k, 1] = inverse + inverse_rolling_inertia(model, min(b, ground))
+    return constants
 
 
 @njit(**INNER)

@@ -67,6 +67,14 @@ class OneRank:
             return min(self.team.run(kernels.step, blocks, *stages, *arguments))
         return int(kernels.step(0, blocks, *stages, *arguments))
 
+    def is_finite(self) -> bool:
+        """Whether all rotations are known to be finite."""
+        return False
+
+    def keep_contact_loads(self) -> None:
+        """Keep the loads of contacts as those of the coming step's beginning."""
+        self.state.previous_contact_load[:] = self.state.contact_load
+
     def set_loads(self, load: Numbers) -> None:
         """Set the loads (m, 6) [N, N m] on all bodies."""
         self.state.load[self.state.row[: len(load)]] = load

@@ -46,6 +46,12 @@ class DeviceArray:
             contiguous = np.ascontiguousarray(array, self.dtype)
             opencl().enqueue_copy(self.queue, self.memory, contiguous, is_blocking=True)
 
+    def copy_from(self, source: "DeviceArray") -> None:
+        """Copy an array of the same shape, on the device."""
+        size = int(np.prod(self.shape)) * self.dtype.itemsize
+        if size:
+            opencl().enqueue_copy(self.queue, self.memory, source.memory, byte_count=size)
+
     def clear(self) -> None:
         """Write 0 everywhere."""
         size = int(np.prod(self.shape)) * self.dtype.itemsize

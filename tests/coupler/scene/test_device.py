@@ -36,7 +36,7 @@ def test_the_device_of_a_scene_goes_to_its_component():
 WRONG = [
     ("still_water", "water", "gpu", {}, r"water\.device must be cpu, opencl, or opencl:0.*'gpu'"),
     ("still_water", "water", "opencl:x", {}, r"found 'opencl:x'.*`quintet devices` lists"),
-    ("sphere_rebound", "spheres", "opencl", {}, r"device must be cpu, for kind dem_bodies.*Remove"),
+    ("plate_modes", "plate", "opencl", {}, r"device must be cpu, for kind fe_plate.*Remove"),
     (
         "still_water",
         "water",
@@ -78,8 +78,8 @@ def test_a_misspelt_device_is_told_from_keys_of_the_kind():
 
 
 def test_a_kind_without_devices_refuses_them_as_it_is_loaded():
-    with pytest.raises(SceneError, match=r"kind dem_bodies must compute on the processor.*opencl"):
-        find("dem_bodies").load("opencl")
+    with pytest.raises(SceneError, match=r"kind fe_plate must compute on the processor.*opencl"):
+        find("fe_plate").load("opencl")
 
 
 def test_an_order_names_its_device():

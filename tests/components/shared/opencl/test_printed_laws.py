@@ -27,6 +27,8 @@ from printed_laws import (
 )
 
 from quintet.components.dem_bodies import laws as dem
+from quintet.components.dem_bodies.kernels import ball_laws as balls
+from quintet.components.dem_bodies.kernels import rolling_resistance as rolling
 from quintet.components.fe_plate import laws as plate
 from quintet.components.particle_dynamics import laws as lattice
 from quintet.components.particle_dynamics.coefficients import PairDamping, SevenRoots
@@ -97,6 +99,9 @@ TOUCHING = (
     PART,
 )  # fmt: skip
 
+ROLLING = (
+    *(vector(1.0),) * 2, PART, LARGE, PART, PART, *(vector(1.0),) * 3, PART,
+)  # fmt: skip
 FORCES = motion.FrameForces(1e-3, vector(9.0), (vector(9.0), vector(9.0), vector(9.0)), vector(9.0))
 LAWS = [
     Law(cubic_spline.shape, (Between(0.0, 2.5),)),
@@ -201,6 +206,16 @@ LAWS = [
     Law(dem.damping_weight, (0.0, PART, LARGE, LARGE), ulp=2),
     Law(dem.contact_force, TOUCHING),
     Law(dem.limit_rolling, (vector(1.0), vector(1.0), PART)),
+    Law(balls.half_kick, (*(vector(1.0),) * 3, PART, PART, PART, *(vector(1.0),) * 4)),
+    Law(
+        balls.drifted, (vector(1.0), (ANY,) * 4, *(vector(1.0),) * 4, 0.01), ulp=11, cancels=True
+    ),
+    Law(balls.from_plane, (vector(1.0), PART, vector(1.0), ANY)),
+    Law(balls.velocity_at_contact, (*(vector(1.0),) * 4, PART, PART)),
+    Law(balls.kinematics, (vector(1.0), LARGE, PART, *(vector(1.0),) * 6)),
+    Law(balls.relative_depth, (ANY, PART, PART)),
+    Law(balls.relative_depth, (ANY, PART, 0.0), name=" on a plane"),
+    Law(rolling.resistance, ROLLING),
     Law(contact.layer_law, (PART,) * 5),
     Law(contact.sphere_law, SPHERE, ulp=3),
     Law(contact.in_series, (PART, PART)),
@@ -247,8 +262,8 @@ NOT_PURE = {
 
 # Solvers that compute on devices today; the laws of others are tried before a release.
 ON_DEVICES = (
-    "sph_fluid", "sph_solid", "meshless_gas", "particle_dynamics", "shared.smoothing",
-    "shared.search", "shared.materials",
+    "sph_fluid", "sph_solid", "meshless_gas", "particle_dynamics", "dem_bodies",
+    "shared.smoothing", "shared.search", "shared.materials",
 )  # fmt: skip
 
 

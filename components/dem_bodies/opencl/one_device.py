@@ -1,0 +1,176 @@
+"""All rows on an OpenCL device, in the place of `ranks/one.py`.
+
+The host makes the rows, sorts them and lists pairs, and computes outputs: rows are copied into its
+state before. Between these, a step copies back the numbers of the report.
+"""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from quintet.components.dem_bodies.contact.lists import ContactLists
+from quintet.components.dem_bodies.kernels.geometry import FAR
+from quintet.components.dem_bodies.opencl import programs
+from quintet.components.dem_bodies.opencl.device_pairs import DevicePairs
+from quintet.components.dem_bodies.opencl.device_rows import DeviceRows
+from quintet.components.dem_bodies.opencl.stages import Reduced, Stages
+from quintet.components.dem_bodies.ranks.one import OneRank
+from quintet.components.dem_bodies.state import (
+    CONTACT_WORK,
+    DEEPEST,
+    DEEPEST_PAIR,
+    ELASTIC_ENERGY,
+    LARGEST_ACCELERATION,
+    LARGEST_SPEED,
+    LOAD_WORK,
+    SMALLEST_GAP,
+    STIFFEST,
+    TOUCHING,
+    TRAVEL,
+    BallPairs,
+    Model,
+    Numbers,
+    State,
+)
+from quintet.components.shared.opencl.devices import build, device_of, require_doubles
+from quintet.components.shared.search.verlet_list import slack
+from quintet.interfaces.component import Fields, Resources
+
+LANES_OF_PROCESSORS = 4  # doubles in one of its vectors; other devices make lanes of pairs
+
+
+class DeviceLists(ContactLists):
+    """Lists of the host, whose history is on a device."""
+
+    pairs: DevicePairs | None = None
+    touching = 0  # most contacts of a row, as the device counts them
+
+    def count_contacts(self, listed: bool = False) -> int:
+        """Most contacts of any row; with `listed` as if all listed pairs touched."""
+        return super().count_contacts(listed) if listed else self.touching
+
+    def note_contacts(self) -> None:
+        """Count the contacts of pairs whose history is on the host."""
+        self.touching = super().count_contacts()
+
+    def read(self) -> None:
+        """Copy history and forces of pairs to the host."""
+        if self.pairs is not None:
+            self.pairs.get()
+
+
+class OneDevice(OneRank):
+    """Steps all rows on a device.
+
+    Parameters
+    ----------
+    state : State
+        As it starts; all bodies are balls.
+    lists : DeviceLists
+    resources : Resources
+    """
+
+    lists: DeviceLists
+
+    def __init__(self, state: State, lists: DeviceLists, resources: Resources) -> None:
+        device = device_of(resources.device)
+        require_doubles(device, resources.device)
+        super().__init__(state, lists, threads=1)
+        balls = lists.balls
+        assert balls is not None
+        self._lanes = LANES_OF_PROCESSORS if device.is_processor else 1
+        queue = device.queue(resources.threads)
+        kernels = build(queue, programs.source(balls.rolling_moment is not None, self._lanes))
+        self.rows = DeviceRows(queue, kernels, self.model, state)
+        self.stages = Stages(kernels, self.rows, self.model, self._lanes)
+        self._is_finite = True
+        self._put()
+
+    def _put(self) -> None:
+        """Copy the host's rows and lists to the device."""
+        lists, balls = self.lists, self.lists.balls
+        assert balls is not None
+        self.rows.put()
+        lists.pairs = DevicePairs(self.rows.queue, self.model, balls, self._lanes)
+        lists.note_contacts()
+        self.stages.follow(lists.pairs)
+        self._is_read = True
+
+    def _read(self) -> None:
+        """Copy rows and pairs to the host, unless they are there."""
+        if not self._is_read:
+            self.rows.get()
+            self.lists.read()
+            self._is_read = True
+
+    def advance(self, state: State, dt: float, loaded: bool) -> bool:
+        """Advance by dt [s]; return False where a position is not finite."""
+        self.rows.put_planes()
+        self._is_read = False
+        travel = self.stages.drift(dt, loaded)
+        if not slack(self.lists.skin, math.sqrt(travel)) >= 0.0:
+            self._read()
+            if not np.isfinite(state.position).all():
+                return False
+            self.lists.renew(state)
+            self._put()
+            travel = 0.0
+        reduced = self.stages.touch_and_kick(dt, loaded)
+        self._is_read = False
+        self._report(reduced, travel)
+        return True
+
+    def _report(self, reduced: Reduced, travel: float) -> None:
+        """Write the report of a step."""
+        report, pairs, kick = self.state.report, reduced.of_pairs, reduced.of_kick
+        g = self.model.gravity
+        report[SMALLEST_GAP] = min(FAR, -pairs["OVERLAP"])
+        report[STIFFEST], report[DEEPEST] = pairs["STIFFNESS"], pairs["RELATIVE"]
+        report[DEEPEST_PAIR] = 0.0 if pairs["RELATIVE"] > 0.0 else -1.0
+        report[ELASTIC_ENERGY] = pairs["ENERGY"] + reduced.rolling_energy
+        report[CONTACT_WORK] = reduced.of_drift["WORK"] + kick["WORK"]
+        report[LOAD_WORK] = reduced.of_drift["LOAD_WORK"] + kick["LOAD_WORK"]
+        report[TRAVEL], report[TOUCHING] = travel, 0.0
+        report[LARGEST_SPEED] = math.sqrt(kick["VELOCITY2"]) + math.sqrt(kick["ROTATION2"])
+        acceleration2 = max(g[0] * g[0] + g[1] * g[1] + g[2] * g[2], kick["ACCELERATION2"])
+        report[LARGEST_ACCELERATION] = (
+            math.sqrt(acceleration2) + math.sqrt(kick["SPIN_UP2"]) + kick["CENTRIPETAL"]
+        )
+        self.state.contact_load[self.rows.count] = reduced.on_ground
+        self.lists.touching = int(kick["CONTACTS"])
+        self._is_finite = reduced.of_drift["BROKEN"] == 0.0
+        if self.rows.count == 1:
+            self._read()  # its clearance limits the step
+
+    def is_finite(self) -> bool:
+        """Whether all rotations are finite, as the device found them."""
+        return self._is_finite
+
+    def set_loads(self, load: Numbers) -> None:
+        """Set the loads (m, 6) [N, N m] on all bodies."""
+        super().set_loads(load)
+        self.rows.put_loads()
+
+    def keep_contact_loads(self) -> None:
+        """Keep the loads of contacts as those of the coming step's beginning."""
+        self.rows.keep_loads()
+
+    def motion(self) -> Sequence[Numbers]:
+        """Position, velocity, orientation and angular velocity of all bodies."""
+        return self.rows.motion()
+
+    def whole(self, *names: str) -> tuple[Model, State]:
+        """Model and state of all rows, copied from the device."""
+        self._read()
+        return self.model, self.state
+
+    def pairs_of_all(self) -> BallPairs | None:
+        """Pairs of balls of all rows, copied from the device."""
+        self._read()
+        return self.lists.balls
+
+    def load(self, saved: Fields) -> None:
+        """Restore a saved state, of a processor or of a device."""
+        super().load(saved)
+        self._put()

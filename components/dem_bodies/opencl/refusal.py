@@ -1,0 +1,34 @@
+"""Checks that a device can compute all that the parameters of bodies ask for."""
+
+from quintet.components.dem_bodies.params import DemBodiesParams
+from quintet.components.dem_bodies.shapes.rigid_body import RigidBody
+from quintet.components.dem_bodies.shapes.solid import is_ball
+from quintet.components.shared.opencl.limits import Limit, refuse_wrong
+
+# Every key of the bodies stands here, in `SUPPORTED`, or in the table of `limits`: a test fails
+# if a new key is in neither.
+SUPPORTED = frozenset(
+    """materials planes pairs gravity impact_speed steps_per_contact longest_step fixed_step
+    contact_forces front_gauge""".split()
+)
+
+
+def refuse_what_needs_the_processor(params: DemBodiesParams, device: str) -> None:
+    """Refuse parameters that a device does not compute; see `refuse_wrong`."""
+    refuse_wrong(limits(params), device)
+
+
+def limits(params: DemBodiesParams) -> dict[str, Limit]:
+    """Limits of keys on devices."""
+    others = [_described(kind) for kind in params.placed.kinds if not is_ball(kind)]
+    shapes, faces = ", ".join(dict.fromkeys(others)), params.contact_with_faces
+    return {
+        "bodies": Limit(shapes, bool(others), "free spheres", "Leave others out"),
+        "dimensions": Limit(params.dimensions, params.dimensions != 3, "3", "Remove it"),
+        "contact_with_faces": Limit(str(faces).lower(), faces, "false", "Set it to false"),
+    }
+
+
+def _described(kind: RigidBody) -> str:
+    """What kind of body is none of free spheres."""
+    return f"{kind.shape} with locked {', '.join(kind.locked)}" if kind.locked else kind.shape

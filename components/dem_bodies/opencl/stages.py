@@ -1,0 +1,134 @@
+"""Stages of the steps of balls on a device, and the numbers that they reduce over all rows."""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from quintet.components.dem_bodies.opencl import programs
+from quintet.components.dem_bodies.opencl.device_pairs import DevicePairs
+from quintet.components.dem_bodies.opencl.device_rows import DeviceRows
+from quintet.components.dem_bodies.state import Model, Numbers
+from quintet.components.shared.opencl.arrays import GROUP, DeviceArray
+from quintet.components.shared.opencl.devices import opencl
+from quintet.components.shared.opencl.launches import Launch
+
+COLUMNS = (len(programs.DRIFT), len(programs.PAIRS), programs.ROLL_COLUMNS, len(programs.KICK))
+PLACES = np.cumsum([0, *COLUMNS])  # in the report, of the columns of drift, pairs, rolling, kick
+
+
+class Reduced(NamedTuple):
+    """What a stage reduces over all rows or pairs: numbers by the names of their columns."""
+
+    of_drift: dict[str, float]
+    of_pairs: dict[str, float]
+    rolling_energy: float  # J
+    of_kick: dict[str, float]
+    on_ground: Numbers  # (6,) N and N m
+
+
+class Tally:
+    """The columns of one kernel, reduced by a second kernel."""
+
+    def __init__(self, kernels: Any, rows: int, place: int, sums: int, report: DeviceArray) -> None:
+        columns, groups = COLUMNS[place], -(-rows // GROUP)
+        self.part = DeviceArray(report.queue, (columns, groups))
+        numbers = (np.int32(groups), np.int32(sums), np.int32(PLACES[place]))
+        self._collect = Launch(
+            report.queue, opencl().Kernel(kernels, "collect"), columns * GROUP, *numbers,
+            self.part, report,
+        )  # fmt: skip
+
+    def collect(self) -> None:
+        """Reduce what the groups of the last run found."""
+        self._collect.run()
+
+
+class Stages:
+    """Stages of one packing.
+
+    Parameters
+    ----------
+    kernels : pyopencl.Program
+        Of `programs.source`.
+    rows : DeviceRows
+    model : Model
+    lanes : int
+        How many pairs are computed at once.
+    """
+
+    def __init__(self, kernels: Any, rows: DeviceRows, model: Model, lanes: int) -> None:
+        self._kernels, self._rows, self._model, self._lanes = kernels, rows, model, lanes
+        self._gravity = np.array([*model.gravity, 0.0])
+        self._of_kernels = {name: getattr(kernels, name) for name in ("touch", "kick")}
+        self._report = DeviceArray(rows.queue, (int(PLACES[-1]),))
+        self._drift_tally = self._tally(rows.count, 0, programs.DRIFT_SUMS)
+        self._kick_tally = self._tally(rows.count, 3, programs.KICK_SUMS)
+        arrays = rows.arrays
+        self._drift = Launch(
+            rows.queue, kernels.drift, rows.count, np.int32(rows.count), self._gravity,
+            rows.inverse, arrays["contact_load"], arrays["load"], rows.listed, arrays["motion"],
+            arrays["orientation"], self._drift_tally.part,
+        )  # fmt: skip
+
+    def _tally(self, rows: int, place: int, sums: int) -> Tally:
+        return Tally(self._kernels, rows, place, sums, self._report)
+
+    def follow(self, pairs: DevicePairs) -> None:
+        """Follow new lists."""
+        rows, kernels, arrays = self._rows, self._of_kernels, self._rows.arrays
+        count, stride, all_rows = map(np.int32, (pairs.count, pairs.stride, rows.count + 1))
+        of_pairs = (
+            count, stride, all_rows, pairs.row, pairs.partner, pairs.constants_row,
+            pairs.constants, rows.plane, arrays["motion"], pairs.history, pairs.push,
+        )  # fmt: skip
+        items = pairs.stride // self._lanes
+        self._pair_tally = self._tally(items, 1, programs.PAIR_SUMS)
+        self._touch = Launch(
+            rows.queue, kernels["touch"], items, *of_pairs, self._pair_tally.part
+        )  # fmt: skip
+        self._roll: Launch | None = None
+        if pairs.spring is not None:
+            if "roll" not in kernels:
+                kernels["roll"] = self._kernels.roll
+            self._roll_tally = self._tally(pairs.count, 2, programs.ROLL_COLUMNS)
+            rolling = (pairs.spring, pairs.moment, self._roll_tally.part)
+            self._roll = Launch(rows.queue, kernels["roll"], pairs.count, *of_pairs, *rolling)
+        self._kick = Launch(
+            rows.queue, kernels["kick"], rows.count, np.int32(rows.count), all_rows, self._gravity,
+            rows.inverse, arrays["load"], pairs.begin, pairs.partner, pairs.incoming_begin,
+            pairs.incoming, pairs.push, pairs.moment, arrays["motion"], arrays["contact_load"],
+            self._kick_tally.part,
+        )  # fmt: skip
+        self._pairs = pairs.count
+
+    def drift(self, dt: float, loaded: bool) -> float:
+        """Half kick and drift by dt [s]; return the square of the largest displacement [m²]."""
+        self._drift.run(np.float64(dt), np.int32(loaded))
+        self._drift_tally.collect()
+        return float(self._report.get()[programs.DRIFT.index("TRAVEL")])
+
+    def touch_and_kick(self, dt: float, loaded: bool) -> Reduced:
+        """Loads of all pairs, and the second half kick of a step of dt [s]."""
+        if self._pairs:
+            self._touch.run(np.float64(dt))
+            self._pair_tally.collect()
+            if self._roll:
+                self._roll.run(np.float64(dt))
+                self._roll_tally.collect()
+        self._kick.run(np.float64(dt), np.int32(loaded))
+        self._kick_tally.collect()
+        drift, pairs, rolling, kick, _ = np.split(self._report.get(), PLACES[1:])
+        no_pairs = np.array([0.0, -np.inf, 0.0, 0.0])
+        ground = programs.GROUND
+        return Reduced(
+            _named(programs.DRIFT, drift),
+            _named(programs.PAIRS, pairs if self._pairs else no_pairs),
+            float(rolling[0]) if self._pairs and self._roll else 0.0,
+            _named(programs.KICK, kick),
+            kick[ground : ground + 6],
+        )
+
+
+def _named(names: tuple[str, ...], numbers: Numbers) -> dict[str, float]:
+    """Numbers by the names of their columns."""
+    return dict(zip(names, numbers.tolist(), strict=True))
