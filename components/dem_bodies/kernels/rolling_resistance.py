@@ -42,12 +42,18 @@ from quintet.components.shared.rotations import Vector, axpy, dot, scaled, sub
 
 
 @njit(**INNER)
+def inverse_surface_inertia(inverse_mass: float, inverse_moment: float, radius: float) -> float:
+    """Return 1/(I + m R²) [1/(kg m²)] of a ball of a radius [m], about a point of its surface."""
+    return 1.0 / (1.0 / inverse_moment + radius**2 / inverse_mass)
+
+
+@njit(**INNER)
 def inverse_rolling_inertia(model: Model, i: int) -> float:
     """Return 1/(I + m R²) [1/(kg m²)] of a ball about a point of its surface; 0 of the ground."""
     if model.inverse_mass[i] == 0.0:
         return 0.0
-    radius = model.bounding_radius[i]
-    return 1.0 / (1.0 / model.inverse_moment[i] + radius**2 / model.inverse_mass[i])
+    inverse_mass, inverse_moment = model.inverse_mass[i], model.inverse_moment[i]
+    return inverse_surface_inertia(inverse_mass, inverse_moment, model.bounding_radius[i])
 
 
 @njit(**INNER)

@@ -1,69 +1,88 @@
 """Listed pairs of balls in the memory of a device, with the history of their contacts."""
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from quintet.components.dem_bodies.contact.ball_pairs import ball_pairs
 from quintet.components.dem_bodies.kernels.rolling_resistance import rolling_constants
 from quintet.components.dem_bodies.opencl.programs import WIDTH
 from quintet.components.dem_bodies.state import BallPairs, Model, Numbers
 from quintet.components.shared.opencl.arrays import DeviceArray
 
 
+@dataclass(frozen=True, slots=True)
 class DevicePairs:
-    """Pairs in the host's order, and which of them list each row.
+    """Pairs as `BallPairs` has them, and which of them list each row."""
 
-    Parameters
-    ----------
-    queue : pyopencl.CommandQueue
-    model : Model
-    balls : BallPairs
-        Of the host, with their history.
-    lanes : int
-        How many pairs are computed at once: arrays that are written have room for so many more.
-    """
+    count: int
+    stride: int  # pairs that arrays have room for
+    begin: DeviceArray  # (b + 1,)
+    row: DeviceArray  # (pairs,)
+    partner: DeviceArray  # (pairs,)
+    constants_row: DeviceArray  # (pairs,)
+    constants: DeviceArray  # (kinds of pairs, 4 WIDTH), see pairs.cl
+    incoming_begin: DeviceArray  # (b + 1,)
+    incoming: DeviceArray  # pairs with a later ball, by its row
+    history: DeviceArray  # (4, stride)
+    push: DeviceArray  # (2 stride, 4) force [N] and depth [m]; force × normal [N]
+    spring: DeviceArray | None  # (stride, 4) N m, elastic moment; None if no pair resists rolling
+    moment: DeviceArray | None  # (stride, 4) N m, all of it
 
-    def __init__(self, queue: Any, model: Model, balls: BallPairs, lanes: int) -> None:
-        self.count, self.balls = len(balls.partner), balls
-        self.stride = -(-self.count // lanes) * lanes
-        rows, numbers = len(balls.begin) - 1, ("begin", "row", "partner", "constants_row")
-        self.begin, self.row, self.partner, self.constants_row = (
-            whole_numbers(queue, getattr(balls, name)) for name in numbers
-        )
-        self.constants = DeviceArray.of(queue, constants_of(model, balls))
-        to_ball = np.flatnonzero(balls.partner < rows)
-        listed = balls.partner[to_ball]
-        ends = np.cumsum(np.bincount(listed, minlength=rows))
-        self.incoming = whole_numbers(queue, to_ball[np.argsort(listed, kind="stable")])
-        self.incoming_begin = whole_numbers(queue, np.concatenate([[0], ends]))
-        self.history = DeviceArray.of(queue, self._with_room(balls.history.T).T)
-        self.push = DeviceArray(queue, (2 * self.stride, 4))
-        self.spring = self.moment = None
-        if balls.rolling_moment is not None:
-            self.spring = DeviceArray.of(queue, self._with_room(balls.rolling_moment, 4))
-            self.moment = DeviceArray(queue, (self.stride, 4))
+    def on_host(self, model: Model, records_forces: bool) -> BallPairs:
+        """Pairs of the host without history; its rows have the order of the device's."""
+        begin, partner = self.begin.get().astype(np.int64), self.partner.get().astype(np.uint32)
+        return ball_pairs(model, begin, partner, records_forces)
 
-    def _with_room(self, rows: Numbers, width: int | None = None) -> Numbers:
-        """Rows (pairs, k), with room for all lanes, and up to a width."""
-        count, columns = rows.shape
-        padded = np.zeros((self.stride, width or columns))
-        padded[:count, :columns] = rows
-        return padded
-
-    def get(self) -> None:
-        """Copy history and forces into the host's pairs."""
-        balls, count = self.balls, self.count
-        balls.history[:] = self.history.get()[:, :count]
+    def get(self, balls: BallPairs) -> None:
+        """Copy history and forces into the same pairs of the host."""
+        balls.history[:] = self.history.get()[:, : self.count]
         if balls.rolling_moment is not None and self.spring is not None:
-            balls.rolling_moment[:] = self.spring.get()[:count, :3]
+            balls.rolling_moment[:] = self.spring.get()[: self.count, :3]
         if len(balls.force):
-            balls.force[:] = self.push.get()[: 2 * count : 2, :3]
+            balls.force[:] = self.push.get()[: 2 * self.count : 2, :3]
 
 
-def whole_numbers(queue: Any, array: NDArray[Any]) -> DeviceArray:
+def pairs_of_host(queue: Any, model: Model, balls: BallPairs, lanes: int) -> DevicePairs:
+    """Copy the host's pairs with their history; so many are computed at once."""
+    count, rows = len(balls.partner), len(balls.begin) - 1
+    stride = -(-count // lanes) * lanes
+    to_ball = np.flatnonzero(balls.partner < rows)
+    listed = balls.partner[to_ball]
+    ends = np.cumsum(np.bincount(listed, minlength=rows))
+    spring = moment = None
+    if balls.rolling_moment is not None:
+        spring = DeviceArray.of(queue, _with_room(balls.rolling_moment, stride, 4))
+        moment = DeviceArray(queue, (stride, 4))
+    return DevicePairs(
+        count=count,
+        stride=stride,
+        begin=_whole(queue, balls.begin),
+        row=_whole(queue, balls.row),
+        partner=_whole(queue, balls.partner),
+        constants_row=_whole(queue, balls.constants_row),
+        constants=DeviceArray.of(queue, constants_of(model, balls)),
+        incoming_begin=_whole(queue, np.concatenate([[0], ends])),
+        incoming=_whole(queue, to_ball[np.argsort(listed, kind="stable")]),
+        history=DeviceArray.of(queue, _with_room(balls.history.T, stride, 4).T),
+        push=DeviceArray(queue, (2 * stride, 4)),
+        spring=spring,
+        moment=moment,
+    )
+
+
+def _whole(queue: Any, array: NDArray[Any]) -> DeviceArray:
     """Copy whole numbers to the device, where they have 32 bits."""
     return DeviceArray.of(queue, array.astype(np.int32))
+
+
+def _with_room(rows: Numbers, count: int, width: int) -> Numbers:
+    """Return an array (count, width) that begins with other rows (n, w)."""
+    padded = np.zeros((count, width))
+    padded[: rows.shape[0], : rows.shape[1]] = rows
+    return padded
 
 
 def constants_of(model: Model, balls: BallPairs) -> Numbers:

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from quintet.components.dem_bodies.state import Model, Numbers, State
+from quintet.components.dem_bodies.state import Model, Numbers, State, sort_rows
 from quintet.components.shared.opencl.arrays import DeviceArray, run
 
 # Arrays of `State` that a device changes; the ground, behind all balls, has them on the host.
@@ -33,7 +33,9 @@ class DeviceRows:
         }
         self.listed = DeviceArray(queue, state.listed_centre.shape)
         self.inverse = DeviceArray(queue, (self.count, 2))
-        self.body = DeviceArray(queue, (self.count,), np.int32)
+        self.body, self.material = (DeviceArray(queue, (self.count,), np.int64) for _ in range(2))
+        self._spare: dict[int, DeviceArray] = {}  # by the words of an array
+        self.is_sorted_apart = False  # whether the host's rows have another order
         self._packed = DeviceArray(queue, (13 * self.count,))
         self.plane, self._planes = DeviceArray(queue, model.plane.shape), np.zeros((0, 4))
         self.put_planes()
@@ -47,6 +49,8 @@ class DeviceRows:
         inverses = np.column_stack([model.inverse_mass, model.inverse_moment])
         self.inverse.put(inverses[: self.count])
         self.body.put(state.body[: self.count])
+        self.material.put(model.material[: self.count])
+        self.is_sorted_apart = False
 
     def put_planes(self) -> None:
         """Copy the planes to the device if any has vanished or come back."""
@@ -59,8 +63,28 @@ class DeviceRows:
         """Copy the loads on all balls to the device."""
         self.arrays["load"].put(self._state.load)
 
+    def sorted_arrays(self) -> list[DeviceArray]:
+        """Arrays that have a row for each ball."""
+        return [*self.arrays.values(), self.inverse, self.body, self.material]
+
+    def spare_of(self, array: DeviceArray) -> DeviceArray:
+        """Room for a copy of an array."""
+        words = int(np.prod(array.shape))
+        if words not in self._spare:
+            self._spare[words] = DeviceArray(self.queue, array.shape)
+        return self._spare[words]
+
+    def sort_host(self) -> None:
+        """Bring the host's rows into the order of the device's."""
+        if self.is_sorted_apart:
+            state = self._state
+            sort_rows(self._model, state, state.row[self.body.get()])
+            state.listed_centre[:] = self.listed.get()
+            self.is_sorted_apart = False
+
     def get(self) -> None:
         """Copy the rows of balls into the host's state."""
+        self.sort_host()
         for name in READ:
             getattr(self._state, name)[: self.count] = self.arrays[name].get()[: self.count]
 

@@ -1,7 +1,8 @@
 """All rows on an OpenCL device, in the place of `ranks/one.py`.
 
-The host makes the rows, sorts them and lists pairs, and computes outputs: rows are copied into its
-state before. Between these, a step copies back the numbers of the report.
+The host makes the rows and computes outputs: rows are copied into its state before. Between these,
+a step copies back the numbers of the report. Where the device is the processor itself the host
+sorts rows and lists pairs; other devices do so themselves, in the same order.
 """
 
 import math
@@ -12,8 +13,9 @@ import numpy as np
 from quintet.components.dem_bodies.contact.lists import ContactLists
 from quintet.components.dem_bodies.kernels.geometry import FAR
 from quintet.components.dem_bodies.opencl import programs
-from quintet.components.dem_bodies.opencl.device_pairs import DevicePairs
+from quintet.components.dem_bodies.opencl.device_pairs import DevicePairs, pairs_of_host
 from quintet.components.dem_bodies.opencl.device_rows import DeviceRows
+from quintet.components.dem_bodies.opencl.search import Search
 from quintet.components.dem_bodies.opencl.stages import Reduced, Stages
 from quintet.components.dem_bodies.ranks.one import OneRank
 from quintet.components.dem_bodies.state import (
@@ -41,9 +43,10 @@ LANES_OF_PROCESSORS = 4  # doubles in one of its vectors; other devices make lan
 
 
 class DeviceLists(ContactLists):
-    """Lists of the host, whose history is on a device."""
+    """Lists of the host, of which a device has the history, and perhaps newer ones."""
 
-    pairs: DevicePairs | None = None
+    pairs: DevicePairs  # of the device
+    are_of_device = False  # whether the host's pairs are older ones
     touching = 0  # most contacts of a row, as the device counts them
 
     def count_contacts(self, listed: bool = False) -> int:
@@ -54,10 +57,17 @@ class DeviceLists(ContactLists):
         """Count the contacts of pairs whose history is on the host."""
         self.touching = super().count_contacts()
 
+    def follow(self, pairs: DevicePairs, most_contacts: int) -> None:
+        """Follow pairs that the device has listed, and the most that a row has."""
+        self.pairs, self.are_of_device, self.most_contacts = pairs, True, most_contacts
+
     def read(self) -> None:
-        """Copy history and forces of pairs to the host."""
-        if self.pairs is not None:
-            self.pairs.get()
+        """Copy pairs with their history and forces to the host; rows have been copied."""
+        if self.are_of_device:
+            self.balls = self.pairs.on_host(self.model, self.records_forces)
+            self.are_of_device = False
+        if self.balls is not None:
+            self.pairs.get(self.balls)
 
 
 class OneDevice(OneRank):
@@ -81,8 +91,12 @@ class OneDevice(OneRank):
         assert balls is not None
         self._lanes = LANES_OF_PROCESSORS if device.is_processor else 1
         queue = device.queue(resources.threads)
-        kernels = build(queue, programs.source(balls.rolling_moment is not None, self._lanes))
+        rolls = balls.rolling_moment is not None
+        kernels = build(queue, programs.source(rolls, self._lanes))
         self.rows = DeviceRows(queue, kernels, self.model, state)
+        self._search: Search | None = None
+        if not device.is_processor:  # which lists pairs faster without a device's sort
+            self._search = Search(kernels, self.rows, self.model, lists.skin, rolls)
         self.stages = Stages(kernels, self.rows, self.model, self._lanes)
         self._is_finite = True
         self._put()
@@ -92,7 +106,8 @@ class OneDevice(OneRank):
         lists, balls = self.lists, self.lists.balls
         assert balls is not None
         self.rows.put()
-        lists.pairs = DevicePairs(self.rows.queue, self.model, balls, self._lanes)
+        lists.pairs = pairs_of_host(self.rows.queue, self.model, balls, self._lanes)
+        lists.are_of_device = False
         lists.note_contacts()
         self.stages.follow(lists.pairs)
         self._is_read = True
@@ -110,15 +125,29 @@ class OneDevice(OneRank):
         self._is_read = False
         travel = self.stages.drift(dt, loaded)
         if not slack(self.lists.skin, math.sqrt(travel)) >= 0.0:
-            self._read()
-            if not np.isfinite(state.position).all():
+            if not self._renew(travel):
                 return False
-            self.lists.renew(state)
-            self._put()
             travel = 0.0
         reduced = self.stages.touch_and_kick(dt, loaded)
         self._is_read = False
         self._report(reduced, travel)
+        return True
+
+    def _renew(self, travel: float) -> bool:
+        """Sort rows and list pairs; return False where a position is not finite.
+
+        `travel` [m²] is infinite where none have been listed.
+        """
+        if self._search is not None and math.isfinite(travel):
+            pairs, most_contacts = self._search.renew(self.lists.pairs)
+            self.lists.follow(pairs, most_contacts)
+            self.stages.follow(pairs)
+            return True
+        self._read()
+        if not np.isfinite(self.state.position).all():
+            return False
+        self.lists.renew(self.state)
+        self._put()
         return True
 
     def _report(self, reduced: Reduced, travel: float) -> None:
@@ -149,6 +178,7 @@ class OneDevice(OneRank):
 
     def set_loads(self, load: Numbers) -> None:
         """Set the loads (m, 6) [N, N m] on all bodies."""
+        self.rows.sort_host()
         super().set_loads(load)
         self.rows.put_loads()
 

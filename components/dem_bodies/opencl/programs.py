@@ -10,13 +10,22 @@ from quintet.components.dem_bodies.kernels.ball_laws import (
     relative_depth,
 )
 from quintet.components.dem_bodies.kernels.geometry import FAR
-from quintet.components.dem_bodies.kernels.rolling_resistance import resistance
-from quintet.components.dem_bodies.laws import LEAST, contact_force, damping_weight
+from quintet.components.dem_bodies.kernels.rolling_resistance import (
+    inverse_surface_inertia,
+    resistance,
+)
+from quintet.components.dem_bodies.laws import (
+    LEAST,
+    contact_force,
+    damping_weight,
+    pair_constants,
+)
 from quintet.components.shared.opencl.arrays import GROUP
 from quintet.components.shared.opencl.kernels import kernels, named
 from quintet.components.shared.opencl.program import Program
 from quintet.components.shared.opencl.types import LANES
 from quintet.components.shared.rotations import cross, dot
+from quintet.components.shared.search.cells import LAYER, ROW, key_of
 
 HERE = Path(__file__).parent
 VECTOR, TURN = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0)
@@ -48,12 +57,14 @@ def source(rolls: bool, lanes: int) -> str:
         "DRIFT_SUMS": DRIFT_SUMS, "DRIFT_COLUMNS": len(DRIFT), "PAIR_SUMS": PAIR_SUMS,
         "PAIR_COLUMNS": len(PAIRS), "ROLL_COLUMNS": ROLL_COLUMNS, "KICK_SUMS": KICK_SUMS,
         "KICK_COLUMNS": len(KICK), "GROUND": GROUND,
+        "LAYER": f"{LAYER}L", "ROW_OF_CELLS": f"{ROW}L",
     }  # fmt: skip
     for columns in (DRIFT, PAIRS, KICK):
         numbers |= {name: number for number, name in enumerate(columns) if name}
     defined = [f"#define {name} {number}" for name, number in numbers.items()]
-    laws = [*_of_balls(program), *_of_pairs(program), *(_of_rolling(program) if rolls else [])]
-    names = ("tallies", "rows", "pairs", *(("rolling",) if rolls else ()))
+    laws = [*_of_balls(program), *_of_pairs(program), *_of_lists(program)]
+    laws += _of_rolling(program) if rolls else []
+    names = ("tallies", "rows", "pairs", "search", *(("rolling",) if rolls else ()))
     return "\n".join([program.text, *defined, *laws, *kernels(*names, folder=HERE)])
 
 
@@ -87,10 +98,19 @@ def _of_pairs(program: Program) -> list[str]:
     ]
 
 
+def _of_lists(program: Program) -> list[str]:
+    """Cells of balls, and constants of new pairs."""
+    return [
+        named(program, "key_of", key_of, *(0.0,) * 4),
+        named(program, "pair_constants", pair_constants, *(0.0,) * 6, returns="Constants"),
+    ]
+
+
 def _of_rolling(program: Program) -> list[str]:
     """Resistance against rolling."""
     rolling = (VECTOR, VECTOR, *(0.0,) * 4, *(VECTOR,) * 3, 0.0)
     return [
         "#define ROLLS",
         named(program, "resistance", resistance, *rolling, returns="Resisting"),
+        named(program, "inverse_inertia", inverse_surface_inertia, *(0.0,) * 3),
     ]

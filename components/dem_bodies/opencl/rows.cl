@@ -135,13 +135,12 @@ __kernel void kick(
 /* Motion as ports have it, in the order of the bodies: positions, velocities, orientations and
    angular velocities one after another. */
 __kernel void pack(
-    int balls, __global const int *body, __global const double4 *motion,
+    int balls, __global const long *body, __global const double4 *motion,
     __global const double4 *orientation, __global double *packed)
 {
     const int i = get_global_id(0);
     if (i >= balls) return;
-    const int b = body[i];
-    const size_t count = balls;
+    const size_t b = body[i], count = balls;
     const double4 moving = motion[4 * i + 1], turning = motion[4 * i + 2];
     vstore3(motion[4 * i].xyz, b, packed);
     vstore3(moving.xyz, b, packed + 3 * count);

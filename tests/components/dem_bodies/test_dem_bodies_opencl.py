@@ -138,6 +138,25 @@ def test_lanes_of_pairs_are_close_to_single_pairs(monkeypatch):
     require_close(first, advanced(spheres(DEVICE), 100), 1e-12)
 
 
+def loose():
+    """Spheres that fly in all directions between planes, of which pairs are often listed again."""
+    random = np.random.default_rng(3)
+    return [body | {"velocity": random.uniform(-1.0, 1.0, 3).tolist()} for body in heap()]
+
+
+@pytest.mark.skipif(is_accelerator_there(), reason="a device that is no processor lists pairs")
+@pytest.mark.parametrize("materials", [STICKY, {"a": material(), "b": material()}])
+def test_pairs_that_a_device_lists_are_those_of_the_host(materials, monkeypatch):
+    monkeypatch.setattr(one_device, "LANES_OF_PROCESSORS", 1)
+    saved = []
+    for is_processor in (True, False):
+        monkeypatch.setattr(
+            Device, "is_processor", property(lambda self, is_it=is_processor: is_it)
+        )
+        saved.append(advanced(spheres(DEVICE, loose(), materials, **HEAP), 300).save())
+    assert differing(*saved) == []
+
+
 def test_snapshots_go_on_elsewhere_and_on_the_device_with_the_same_bits():
     device, processor = (advanced(spheres(resources), 150) for resources in (DEVICE, Resources(1)))
     moved_out, moved_in, moved_on = spheres(Resources(1)), spheres(DEVICE), spheres(DEVICE)
@@ -197,7 +216,10 @@ REFUSED = {
 
 
 def test_every_key_of_the_bodies_is_supported_or_limited():
-    keys, limited = {field.name for field in fields(DemBodiesParams)}, limits(params(heap(), STICKY))
+    keys, limited = (
+        {field.name for field in fields(DemBodiesParams)},
+        limits(params(heap(), STICKY)),
+    )
     assert keys == SUPPORTED | limited.keys() and not SUPPORTED & limited.keys()
     assert limited.keys() == REFUSED.keys()
 
