@@ -39,20 +39,16 @@ def lattice(nx: int, ny: int, nz: int) -> dict[str, Any]:
 def cases() -> tuple[BenchCase, ...]:
     """Return the benchmark, and smaller and larger ones that show how the cost grows."""
     sizes = {"small": (21, 21, 22), "common": (27, 27, 28), "large": (46, 46, 47)}
+    tables = {name: lattice(*size) for name, size in sizes.items()}
     # Loads pyopencl where it is installed; benchmarks alone ask for it.
-    from quintet.components.shared.opencl.devices import is_accelerator_there, is_any_there
+    from quintet.components.shared.opencl.devices import is_any_there
 
-    on_processor = [case(name, size) for name, size in sizes.items()]
-    on_devices = [case(name, size, "opencl") for name, size in sizes.items() if is_any_there()]
-    # Fewer do not fill an accelerator; processors would take minutes.
-    million = [case("1M", (100, 100, 100), "opencl")] if is_accelerator_there() else []
-    return (*on_processor, *on_devices, *million)
+    on_devices = [case(name, table, "opencl") for name, table in tables.items() if is_any_there()]
+    return (*(case(name, table) for name, table in tables.items()), *on_devices)
 
 
-def case(name: str, size: tuple[int, int, int], device: str = "cpu") -> BenchCase:
-    """A lattice of so many spheres along x, y and z, on a device."""
-    series = "lattice" if device == "cpu" else "lattice, OpenCL"
-    return BenchCase(
-        f"lattice, {name}" + (", OpenCL" if device != "cpu" else ""), lattice(*size), 20, 200,
-        "sphere-steps/s", series=series, device=device,
-    )  # fmt: skip
+def case(name: str, table: dict[str, Any], device: str = "cpu") -> BenchCase:
+    """A lattice on a device."""
+    tail = "" if device == "cpu" else ", OpenCL"
+    unit, series = "sphere-steps/s", f"lattice{tail}"
+    return BenchCase(f"lattice, {name}{tail}", table, 20, 200, unit, series=series, device=device)

@@ -42,7 +42,7 @@ from quintet.components.shared.materials import fracture, strength
 from quintet.components.shared.materials.solid import Solid
 from quintet.components.shared.opencl.program import Program
 from quintet.components.shared.opencl.refusal import PrintError
-from quintet.components.shared.search.cells import Grid, cell_of
+from quintet.components.shared.search.cells import Grid, cell_of, key_of
 from quintet.components.shared.smoothing import cubic_spline, quintic_spline, wendland
 from quintet.components.shared.smoothing import smoothing as smooth
 from quintet.components.sph_fluid import laws as fluid
@@ -216,6 +216,9 @@ LAWS = [
     Law(balls.relative_depth, (ANY, PART, PART)),
     Law(balls.relative_depth, (ANY, PART, 0.0), name=" on a plane"),
     Law(rolling.resistance, ROLLING),
+    Law(rolling.inverse_surface_inertia, (LARGE,) * 3),
+    Law(rolling.in_contact_plane, (vector(1.0), vector(1.0))),
+    Law(key_of, (ANY, ANY, ANY, 0.03)),
     Law(contact.layer_law, (PART,) * 5),
     Law(contact.sphere_law, SPHERE, ulp=3),
     Law(contact.in_series, (PART, PART)),
