@@ -71,7 +71,8 @@ class Account:
         worst = float(np.abs(gap).max()) if np.size(gap) else 0.0
         if worst:
             name = RESIDUALS.get(unit, OTHER)
-            relative = worst / scale if scale else float("inf")
+            known = scale and worst == worst  # nan is no small difference
+            relative = worst / scale if known else float("inf")
             setattr(self, name, max(getattr(self, name), relative))
 
 

@@ -39,6 +39,12 @@ def test_a_difference_is_booked_under_its_unit_and_the_worst_one_stays():
     assert account.momentum_residual == np.inf
 
 
+def test_a_difference_that_is_no_number_is_the_worst():
+    account = Account("rope")
+    account.note("N", [0.0, float("nan"), 0.0], 1.0)
+    assert account.momentum_residual == float("inf")
+
+
 def test_all_that_was_given_is_applied_or_on_its_way():
     ledger = Ledger(_exchange())
     transfer = 1  # number of the transfer that brings the force
