@@ -83,8 +83,8 @@ class Damping:
     coefficient : N s/m
         δ.
     range
-        Which pairs: all, at any distance, as the paper's formula has it (up to 2000 points);
-        those within two spacings (cut-off); or with the weight of the force's STEP (step).
+        Which pairs: all, at any distance, as the paper's formula has it (up to 2000 points, open
+        sides); those within two spacings (cut-off); or with the weight of the force's STEP (step).
     cut_off : 1
         s of that weight.
     """

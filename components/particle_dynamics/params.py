@@ -164,7 +164,8 @@ class ParticleLatticeParams:
     integrator
         Of second order, or Yoshida's of fourth; with damping both are of second.
     courant : 1
-        Step over the greatest stable one of the highest frequency: 2/ω, of Yoshida's 1.573/ω.
+        Step over the greatest stable one of the highest frequency, be it that of the drive: 2/ω, of
+        Yoshida's 1.573/ω. Strong damping makes it shorter.
     substeps : 1
         Steps that are computed in one call of the coupler.
     averages
@@ -214,6 +215,11 @@ class ParticleLatticeParams:
                 is_literal and self.lattice.count > 2000,
                 f"damping of all pairs is for at most 2000 points; found {self.lattice.count}. "
                 "Give damping the range cut-off.",
+            ),
+            (
+                is_literal and bool(self.lattice.periodic),
+                "damping of all pairs needs open sides, for a pair and its images are at several "
+                "distances; found periodic ones. Give damping the range cut-off.",
             ),
             (
                 amplitude >= spacing,

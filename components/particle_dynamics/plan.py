@@ -31,6 +31,8 @@ def plan(params: ParticleLatticeParams) -> Plan:
         frequency = highest_frequency(law, lattice.spacing, lattice.mass)
     tether = max((bath.tether for bath in params.baths), default=0.0)
     frequency = math.sqrt(frequency**2 + tether / lattice.mass)
+    if params.drive is not None:
+        frequency = max(frequency, 2.0 * math.pi * params.drive.frequency)
     step = damped_step(params.damping, lattice.mass, lattice.count, params.integrator)
     if frequency > 0.0:
         step = min(step, params.courant * LIMIT[params.integrator] / frequency)

@@ -301,6 +301,14 @@ def test_aluminium_itself_is_stepped():
     [
         ({"collision_rate": 1.0, "integrator": "yoshida"}, "need the integrator"),
         ({"force_table": None, "seven_roots": None}, "one pair force"),
+        (
+            {
+                "cells": (6, 6, 6),
+                "periodic": ("x",),
+                "damping": Damping(coefficient=1.0, range="all"),
+            },
+            "damping of all pairs needs open sides",
+        ),
     ],
 )
 def test_what_does_not_go_together_is_refused(settings, reason):
@@ -322,6 +330,11 @@ def test_strong_damping_limits_the_step(kind):
     with pytest.raises(StepError):
         for _ in range(100):
             solver.step(vibrating)
+
+
+def test_a_drive_above_all_frequencies_of_the_lattice_limits_the_step():
+    slow, fast = bar(frequency=TOP), bar(frequency=10.0 * TOP)
+    assert fast.stable_dt() == pytest.approx(0.1 * slow.stable_dt(), rel=1e-12)
 
 
 def test_a_drive_of_a_frozen_point_is_refused():
