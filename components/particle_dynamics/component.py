@@ -49,19 +49,20 @@ class ParticleLattice(Component):
         built = build(params)
         self.bathed = bathed(built.start, baths)
         whole = model(params, built, self.bathed)
-        temperature = np.array([bath.temperature for bath in baths], float)[self.bathed.bath]
-        state = initial_state(params, built.start, whole, temperature)
+        state = initial_state(params, built.start, whole, self._bath_temperatures())
         self.rows = rows_of(resources, params, built, state, whole)
         self.built = self.rows.reduced(built)
         self.wall = wall_of(self.bathed, baths, self.rows.bathed)
         stiffest = self.bathed.tether.max(initial=0.0)
         frequency = math.sqrt(built.frequency**2 + stiffest / self.lattice.mass)  # rad/s
-        vibrating = params.courant * (LIMIT[params.integrator] / frequency)  # s
+        driven = 2.0 * math.pi * (params.drive.frequency if params.drive else 0.0)  # rad/s
+        vibrating = params.courant * (LIMIT[params.integrator] / max(frequency, driven))  # s
         mass, count = self.lattice.mass, self.lattice.count
         damped = damped_step(params.damping, mass, count, params.integrator)
         self.substep = min(vibrating, damped)  # s
         self.losses, free = Losses(), self.lattice.count - len(built.frozen)
         self.budget = EnergyBudget(params, self.rows, self.bathed, frequency, free)
+        self.started = 0.0  # s, when this run began
 
     @property
     def state(self) -> State:
@@ -150,15 +151,46 @@ class ParticleLattice(Component):
         """Copy out all state; the bits of the generator as integers."""
         arrays = self.rows.save()
         arrays["generator"] = arrays["generator"].view(np.int64)
-        numbers = np.array([self.losses.unchecked, self.budget.initial, *self.losses.times])
+        numbers = np.array(
+            [self.started, self.losses.unchecked, self.budget.initial, *self.losses.times]
+        )
         return arrays | {"means": self.budget.means.sums.copy(), "rest": numbers}
 
     def load(self, state: Fields) -> None:
         """Restore a saved state, bit for bit."""
         self.rows.load({**state, "generator": state["generator"].view(np.uint64)})
+        started, unchecked, initial, *times = state["rest"].tolist()
+        self._begin_averages(started)
         self.budget.means.sums[:] = state["means"]
-        self.losses.unchecked, self.budget.initial = int(state["rest"][0]), float(state["rest"][1])
-        self.losses.times[:] = state["rest"][2:]
+        self.losses.unchecked, self.budget.initial = int(unchecked), initial
+        self.losses.times[:] = times
+
+    def _begin_averages(self, started: float) -> None:
+        """Count the begin of averages from when a run was started [s]."""
+        self.started, begin = started, started + self.params.averages.begin
+        self.rows.average_from(begin)
+        self.budget.begin_averages(begin)
+
+    def _bath_temperatures(self) -> Array:
+        """Temperatures (b,) K of all bathed points as the scene has them."""
+        baths = np.array([bath.temperature for bath in self.params.baths], float)
+        return np.asarray(baths[self.bathed.bath])
+
+    def begin_from(self, state: Fields) -> None:
+        """Begin from the state of another run, with the baths and frozen points of this one.
+
+        Averages begin again; a drive keeps its phase.
+        """
+        begun = {**state, "kinetic": np.zeros_like(state["kinetic"])}
+        if len(state["temperature"]) == len(self.bathed.point):
+            begun["temperature"] = self._bath_temperatures()
+        for name in ("velocity", "acceleration"):
+            begun[name] = np.array(state[name])
+            begun[name][self.built.frozen] = 0.0
+        super().begin_from(begun)
+        self._begin_averages(self.time)
+        self.budget.note()
+        self.losses.times[:] = -1.0
 
     def totals(self) -> Totals:
         """Mass, momentum and energies; internal is that of pairs and tethers."""

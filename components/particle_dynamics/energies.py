@@ -67,6 +67,11 @@ class EnergyBudget:
         self.initial = sum(self.energies())  # J
         self.means.add(0.0, self.integrals())
 
+    def begin_averages(self, time: float) -> None:
+        """Let all means begin again from a time [s] on."""
+        self._begin = self.means.begin = time
+        self.means.sums[:] = 0.0
+
     def _time(self) -> float:
         return float(self._rows.state.energies[TIME])
 

@@ -134,6 +134,10 @@ class DeviceRows:
             weight = dt if end > self.terms.averaged_from else 0.0
             self._stages.make(h, end, weight, number == len(stages) - 1)
 
+    def average_from(self, time: float) -> None:
+        """Average kinetic energies from a time [s] on."""
+        self.terms = self.terms._replace(averaged_from=time)
+
     def needs_lists(self) -> bool:
         """Whether points that are not listed may interact soon."""
         return bool(slack(EARLY * self.skin, self._moved) < 0.0)

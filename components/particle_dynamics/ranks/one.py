@@ -56,6 +56,10 @@ class OneRank:
             )
         )  # fmt: skip
 
+    def average_from(self, time: float) -> None:
+        """Average kinetic energies from a time [s] on."""
+        self.terms = self.terms._replace(averaged_from=time)
+
     def needs_lists(self) -> bool:
         """Whether points that are not listed may interact soon."""
         return self.lists.needs_rebuild(self.state.position, self.state.listed)

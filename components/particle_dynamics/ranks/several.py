@@ -150,6 +150,10 @@ class SeveralRanks:
         pairs = self._layout.pairs
         close_stage(h, model, state, predicted, pairs, terms.law, terms.damping, terms.period)
 
+    def average_from(self, time: float) -> None:
+        """Average kinetic energies from a time [s] on."""
+        self.terms = self.terms._replace(averaged_from=time)
+
     def needs_lists(self) -> bool:
         """Whether points that are not listed may interact soon."""
         return slack(EARLY * self.skin, self._moved) < 0.0
