@@ -124,8 +124,8 @@ class JohnsonCookDamage:
 class Material:
     """An isotropic solid: elastic, and if told so plastic, compressible by shocks, and brittle.
 
-    Of `youngs_modulus` and `shear_modulus` one is given. Without a Poisson's ratio the bulk
-    modulus is ρc² of the equation of state.
+    Of `youngs_modulus` and `shear_modulus` one is given. With an equation of state the bulk modulus
+    is its ρc², and Poisson's ratio only gives the shear modulus from Young's.
 
     Parameters
     ----------
