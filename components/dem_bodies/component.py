@@ -245,6 +245,9 @@ class DemBodies(Component):
         if self.faces:
             totals.kinetic += self.faces.penalty.numbers.half_kick
             totals.internal += self.faces.penalty.numbers.energy
+            # Spheres that touch faces are free: nothing else takes or gives energy.
+            by_friction = self.faces.penalty.numbers.dissipated
+            totals.dissipated = self.accumulated.dissipated + by_friction
         return totals
 
     def view(self) -> Fields:
