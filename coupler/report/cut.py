@@ -41,15 +41,16 @@ def _depths(shown: Shown) -> Array:
     return np.concatenate([shown.points[:, 1], *(face[:, 1] for face in shown.faces)])
 
 
-def cut_and_sorted(shown: Shown, between: Depths, keeps_spheres: bool = False) -> Shown:
+def cut_and_sorted(shown: Shown, between: Depths, keeps_bodies: bool = False) -> Shown:
     """Leave out what is nearer or farther than some depths [m]; sort all, the farthest first.
 
-    Plain faces stay; faces that show a field are cut as particles are, so that solids that show
-    the faces of all their elements are seen from within.
+    With `keeps_bodies` spheres, and points that are too few to hide anything, stay. Plain faces
+    stay; faces that show a field are cut as particles are, so that solids that show the faces of
+    all their elements are seen from within.
     """
     near, far = between
     within = np.isfinite(shown.points).all(axis=1)
-    if not (keeps_spheres and shown.radius.any()):
+    if not (keeps_bodies and (shown.radius.any() or not spacing(shown.points))):
         within &= (shown.points[:, 1] >= near) & (shown.points[:, 1] <= far)
     points = np.flatnonzero(within)
     points = points[np.argsort(-shown.points[points, 1], kind="stable")]

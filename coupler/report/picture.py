@@ -76,7 +76,7 @@ class Cut(NamedTuple):
     near: float
     far: float
     text: str  # what is left out
-    keeps_spheres: bool = False
+    keeps_bodies: bool = False
 
 
 def draw_run(run: Path, out: Path, picture: Picture, title: str = "") -> Path:
@@ -139,7 +139,7 @@ def turned_views(
     ]
     cut = _cut(picture, whole)
     between = cut.near, cut.far
-    views = [[cut_and_sorted(shown, between, cut.keeps_spheres) for shown in v] for v in whole]
+    views = [[cut_and_sorted(shown, between, cut.keeps_bodies) for shown in v] for v in whole]
     return cut, views
 
 
@@ -162,7 +162,7 @@ def _cut(picture: Picture, views: Sequence[Sequence[Shown]]) -> Cut:
         return Cut(-infinite, infinite, "")
     depth = min(depths)  # one for all panels
     text = f"particles in front of {axis} = {viewpoint.ahead * depth:.3g} m left out"
-    return Cut(depth, infinite, text, keeps_spheres=True)
+    return Cut(depth, infinite, text, keeps_bodies=True)
 
 
 def add_colour_bars(

@@ -75,6 +75,8 @@ def _range(values: Array) -> tuple[float, float]:
     """Lowest and highest value of the colours, but for a few values far away."""
     clipped = CLIPPED if len(values) > ENOUGH else 0.0
     low, high = np.percentile(values, [clipped, 100.0 - clipped]).tolist()
+    if not high > low:  # nearly all are equal: the few that are not are what is to be seen
+        low, high = float(values.min()), float(values.max())
     low = min(low, 0.0) if values.min() >= 0.0 and low < 0.3 * high else low
     if high > low:
         return low, high

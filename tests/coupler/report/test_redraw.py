@@ -9,7 +9,8 @@ from quintet.coupler.files.vtkhdf import VtkHdf
 from quintet.coupler.report import picture as drawing
 from quintet.coupler.report.cut import depth_of_bodies
 from quintet.coupler.report.picture import Picture, draw_run
-from quintet.coupler.report.view_steps import read
+from quintet.coupler.report.view_drawing import _range
+from quintet.coupler.report.view_steps import read, view_files
 from quintet.coupler.report.viewpoint import VIEWPOINTS
 
 UNITS = {"velocity": "m/s", "pressure": "Pa"}
@@ -63,6 +64,23 @@ def test_a_ball_under_water_is_seen(folder, drawn_figures):
     assert order(ball) > order(water), "bodies are drawn after particles"
     assert len(water.get_offsets()) == np.count_nonzero(POINTS[:, 1] >= 0.25)
     assert "particles in front of y = 0.25 m left out" in drawn_figures[0].get_suptitle()
+
+
+def test_a_point_in_front_of_the_middle_stays(folder):
+    """A buoy before the ball, which water in front of would hide: it hides nothing itself."""
+    buoy = VtkHdf(folder / "buoy.vtkhdf", UNITS)
+    buoy.append(0.0, {"points": np.array([[0.5, 0.01, 0.4]]), "velocity": np.ones((1, 3))})
+    buoy.close()
+    _, ((_, shown, water),) = drawing.turned_views(view_files(folder), [0.0], Picture([0.0]))
+    assert shown.name == "buoy" and len(shown.points) == 1
+    assert 0 < len(water.points) < len(POINTS)
+
+
+def test_a_few_values_among_equal_ones_have_colours():
+    """As the plastic strain of a strike: the bar would end at 1 otherwise, whatever they are."""
+    strain = np.r_[np.zeros(2000), 0.05]
+    assert _range(strain) == (0.0, 0.05)
+    assert _range(np.zeros(2000)) == (0.0, 1.0)
 
 
 def test_nothing_is_left_out_where_particles_hide_no_body(folder, drawn_figures):
