@@ -9,6 +9,7 @@ from quintet.coupler.report.work_precision import three_digits
 
 Row = dict[str, Any]
 MEGA = 1e6  # bytes
+NOTHING: Row = {"errors": {}, "relative": {}}  # of a refinement that measures something else
 
 
 def _table(*heads: str) -> Table:
@@ -29,9 +30,9 @@ def costs_and_errors(rows: Sequence[Row]) -> Table:
     summary.add_row("", *map(_state, rows))
     # Refinements may measure different quantities by the same name.
     for name, unit in dict.fromkeys(pair for row in rows for pair in row["units"].items()):
-        of_unit = [row if row["units"].get(name) == unit else None for row in rows]
-        add(f"error of {name} [{unit}]", [row and row["errors"].get(name) for row in of_unit])
-        relative = [row and row["relative"].get(name) for row in of_unit]
+        of_unit: list[Row] = [row if row["units"].get(name) == unit else NOTHING for row in rows]
+        add(f"error of {name} [{unit}]", [row["errors"].get(name) for row in of_unit])
+        relative = [row["relative"].get(name) for row in of_unit]
         if unit != "1":
             add("  relative [%]", [None if e is None else 100.0 * e for e in relative])
     summary.add_row("refines", *(row["kind"] for row in rows))
