@@ -15,7 +15,7 @@ pull follows from where the fairleads are.
 Papers: Irvine, Cable Structures (1981); Jonkman, NREL/TP-500-41958 (2007), section 2.3.
 """
 
-from quintet.components.mooring_lines.features import refuse_joins
+from quintet.components.mooring_lines.joins import refuse_joins
 from quintet.components.mooring_lines.params import MooringLinesParams
 from quintet.components.mooring_lines.plan import plan
 from quintet.components.mooring_lines.ports import SHOWS, ports

@@ -6,6 +6,7 @@ import numpy as np
 
 from quintet.components.mooring_lines import MANIFEST, diagnostics, features
 from quintet.components.mooring_lines.build import first_state, lines_of
+from quintet.components.mooring_lines.joins import refuse_joins
 from quintet.components.mooring_lines.kernels import add_loads, read_lines
 from quintet.components.mooring_lines.params import MooringLinesParams
 from quintet.components.mooring_lines.ports import GAUGE, SHOWS
@@ -42,7 +43,7 @@ class MooringLines(Component):
 
     def bind(self, static: Fields, joined: Keys) -> None:
         """Make room for the bodies that links bring."""
-        features.refuse_joins(self.params, static, joined)
+        refuse_joins(self.params, static, joined)
         self.mass = np.full(1 + int(self.lines.body.max()), math.inf)
         if "motion.mass" in static:
             self.mass = np.array(static["motion.mass"])

@@ -23,7 +23,8 @@ def refuse_unknown_sets(
     SceneError
         With a sentence for each of them.
     """
-    nodes, elements = {node_set.name for node_set in node_sets}, set()
+    nodes = {node_set.name for node_set in node_sets}
+    elements: set[str] = set()
     for part in parts:
         if isinstance(shape := part.geometry, Mesh):
             loaded = read(shape.file, part.coincident_nodes, part.parts)
