@@ -50,12 +50,13 @@ def run_describe(options: argparse.Namespace) -> int:
         print(_json(listed) if options.json else plain)
         return 0
     reference, part = chosen(options.subject)
-    tables = [part_of(reference, part)] if part else reference.sections
+    section = part_of(reference, part) if part else None
+    tables = [section] if section else reference.sections
     if options.json:
         print(_json([as_data(section) for section in tables]))
         return 0
     width = shutil.get_terminal_size().columns if sys.stdout.isatty() else None
-    print("\n".join(section_lines(*tables, width) if part else lines(reference, width)))
+    print("\n".join(section_lines(section, width) if section else lines(reference, width)))
     return 0
 
 
