@@ -22,7 +22,8 @@ def write_weights(
 ) -> None:
     """Write the weights of nodes near each particle: w ∝ V (1 - q)⁴ (1 + 4q), q = r/r_last.
 
-    As the last node has no weight, weights change continuously when another takes its place.
+    As the last node has no weight, weights change continuously when another takes its place. Where
+    all are equally far away they share by their volumes.
 
     Parameters
     ----------
@@ -46,6 +47,10 @@ def write_weights(
             q = math.sqrt(squares[i, k]) / reach
             weights[i, k] = volumes[near[i, k]] * (1.0 - q) ** 4 * (1.0 + 4.0 * q)
             summed += weights[i, k]
+        if summed == 0.0:  # all are as far away as the last, as round the middle of a cell
+            for k in range(near.shape[1]):
+                weights[i, k] = volumes[near[i, k]]
+                summed += weights[i, k]
         nearest = OUTSIDE * spacing[near[i, 0]]
         scale = 1.0 / summed if squares[i, 0] < nearest * nearest else 0.0
         for k in range(near.shape[1]):

@@ -256,6 +256,14 @@ def test_dust_and_gas_relax_together_as_the_exact_solution_has_it():
     assert lost[4] == pytest.approx(heated + kinetic, rel=2e-5)
 
 
+@pytest.mark.parametrize(("planar", "nodes"), [(True, 4), (False, 8)])
+def test_a_particle_in_the_middle_of_a_cell_feels_its_corners_alike(planar, nodes):
+    gas = Gas(planar=planar, spacing=0.25, jitter=0.0, nodes=nodes)
+    gas.step(dust([[0.5, 0.5, 0.5]], velocity=(30.0, 0.0, 0.0)), 1e-7)
+    assert gas.exchange.weights == pytest.approx(1.0 / nodes)
+    assert gas.exchange.loads.force[0, 0] < 0.0 and gas.exchange.stable_dt(gas.primitive) > 0.0
+
+
 def test_the_step_follows_the_faster_of_particle_and_gas():
     """Explicit coupling: 1/τ of the particle, and of the nodes with all the dust around them."""
     gas = Gas(jitter=0.0)
