@@ -193,6 +193,11 @@ class MeshlessGas(Component):
         self.state.load({**state, **states})
         self._continue_from_state()
 
+    def begin_from(self, state: Fields) -> None:
+        """Begin from the state of another run; that the flow had settled there counts no more."""
+        super().begin_from(state)
+        self.monitor.unsettle()
+
     def notes(self) -> tuple[str, ...]:
         """Changes of neighbours, and the accuracy of clouds of bodies."""
         return (*self.motion.domain.notes, *accuracy_notes(self.params))

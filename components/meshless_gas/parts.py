@@ -167,6 +167,9 @@ class Monitor(Part):
     def update(self, primitive: Array, change: float, time: float) -> None:
         """Count a step of this relative change of densities [1], up to a time [s]."""
 
+    def unsettle(self) -> None:
+        """Let a flow that has settled go on: its boundaries may be others now."""
+
     def final_warnings(self, primitive: Array) -> dict[str, str]:
         """Doubts about a run that has ended."""
         return {}

@@ -65,6 +65,10 @@ class SteadyMonitor(Monitor):
         if change <= self.criteria.change and is_still:
             self.memory[SETTLED], self.memory[SINCE] = 1.0, time
 
+    def unsettle(self) -> None:
+        """Let a flow that has settled go on, until the next look at least."""
+        self.memory[SETTLED] = self.memory[SINCE] = 0.0
+
     def _mark(self, primitive: Array) -> Array:
         density, forces = primitive[: self.nodes, 0], self.walls.forces(primitive)
         return np.concatenate([self.memory[:1], density, forces.ravel()])

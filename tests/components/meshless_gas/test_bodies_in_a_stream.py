@@ -85,6 +85,11 @@ def test_a_settled_flow_stands_still_and_says_so() -> None:
     resumed = sphere(steady={"steps": 5, "change": 1.0, "force": 1.0})
     resumed.load(saved_state)
     assert math.isinf(resumed.stable_dt())
+    restarted = sphere(steady={"steps": 5, "change": 1.0, "force": 1.0})
+    restarted.begin_from(saved_state)  # its stream may be another
+    assert math.isfinite(restarted.stable_dt())
+    restarted.step(restarted.stable_dt())
+    assert (restarted.save()["conservative"] != saved_state["conservative"]).any()
 
 
 def test_nothing_tells_whether_a_flow_has_settled_where_no_steady_says_when() -> None:
