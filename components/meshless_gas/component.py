@@ -2,8 +2,6 @@
 
 import math
 
-import numpy as np
-
 from quintet.components.meshless_gas import MANIFEST, diagnostics, features, view
 from quintet.components.meshless_gas.accuracy import accuracy_notes
 from quintet.components.meshless_gas.build import initial_state
@@ -16,7 +14,6 @@ from quintet.components.meshless_gas.port_readers import port_readers
 from quintet.components.meshless_gas.ports import SHOWS
 from quintet.components.meshless_gas.resolution import coarse_clouds
 from quintet.components.meshless_gas.scheme import SpatialScheme
-from quintet.components.meshless_gas.sidedness import sidedness
 from quintet.components.meshless_gas.state import Fluxes
 from quintet.components.meshless_gas.thread_grain import FEWEST, LIGHT
 from quintet.components.shared.threads import Team
@@ -29,7 +26,6 @@ from quintet.interfaces.component import (
     Resources,
     Totals,
 )
-from quintet.interfaces.errors import StepError
 
 
 class MeshlessGas(Component):
@@ -141,23 +137,13 @@ class MeshlessGas(Component):
         failed = ranks.greatest(first + wrong if wrong >= 0 else -1)  # among all
         if failed >= 0:
             mine: list[int] = [wrong] if wrong >= 0 and first + wrong == failed else []
-            raise self.failure(mine, dt)
+            share = dt / self.scheme.shortest_step
+            raise diagnostics.step_error(
+                mine, domain, work.primitive, state.time, share, self.params.planar, self.team,
+                ranks,
+            )  # fmt: skip
         if len(domain.mirrored):
             hold_along(domain.mirrored, domain.cloud.normals, state.conservative, work.primitive)
-
-    def failure(self, wrong: list[int], dt: float) -> StepError:
-        """Error of a state that is none in a step of dt [s].
-
-        `wrong` has the row among nodes that are advanced, on the rank that has it.
-        """
-        domain, state, primitive = self.motion.domain, self.state, self.fluxes.primitive
-        rows = self.all_ranks.share(domain).inner[wrong].astype(np.int64)
-        sided = sidedness(domain.cloud, domain.stencils, rows, self.params.planar, self.team)
-        numbers = (domain.cloud.positions[rows], primitive[rows], sided[:, None])
-        where = self.all_ranks.from_owner(np.hstack(numbers).ravel())
-        share = dt / self.scheme.shortest_step
-        sentence = diagnostics.failure(where[:3], where[3:8], state.time, share, float(where[8]))
-        return StepError(sentence, where[:3])
 
     def _continue_from_state(self) -> None:
         """Compute all that follows from the state, as it is at the start or was loaded."""

@@ -10,11 +10,12 @@ from quintet.components.meshless_gas.kernels.motion import write_changes
 from quintet.components.meshless_gas.kernels.sums import add_errors
 from quintet.components.meshless_gas.params import MeshlessGasParams
 from quintet.components.meshless_gas.ranks.one import Ranks
-from quintet.components.meshless_gas.sidedness import UNEVEN
+from quintet.components.meshless_gas.sidedness import UNEVEN, sidedness
 from quintet.components.meshless_gas.state import Fluxes, State, conserved
 from quintet.components.meshless_gas.thread_grain import LIGHT, WHOLESALE
 from quintet.components.shared.threads import Team
 from quintet.interfaces.component import Array, Fields, Totals
+from quintet.interfaces.errors import StepError
 
 SAFE = 0.8  # share of 1/Σ(|v·c| + a|c|) that steps may take in every flow that was tried
 ROUNDING = 1e-12  # of the mass flow at the speed of sound
@@ -142,6 +143,36 @@ def totals(
         work=state.work,
         dissipated=0.0,  # friction heats the gas
     )
+
+
+def step_error(
+    wrong: list[int],
+    domain: Domain,
+    primitive: Array,
+    time: float,
+    share: float,
+    planar: bool,
+    team: Team,
+    ranks: Ranks,
+) -> StepError:
+    """Error of a state that is none.
+
+    Parameters
+    ----------
+    wrong : list of int
+        The row among nodes that are advanced, on the rank that has it.
+    domain, primitive, planar, team, ranks
+    time : float, s
+        When the step began.
+    share : float, 1
+        The step over 1/Σ(|v·c| + a|c|).
+    """
+    rows = ranks.share(domain).inner[wrong].astype(np.int64)
+    sided = sidedness(domain.cloud, domain.stencils, rows, planar, team)
+    numbers = (domain.cloud.positions[rows], primitive[rows], sided[:, None])
+    where = ranks.from_owner(np.hstack(numbers).ravel())
+    sentence = failure(where[:3], where[3:8], time, share, float(where[8]))
+    return StepError(sentence, where[:3])
 
 
 def failure(place: Array, state: Array, time: float, share: float, sided: float) -> str:

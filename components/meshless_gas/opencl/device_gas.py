@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from quintet.components.meshless_gas import MANIFEST
 from quintet.components.meshless_gas.component import MeshlessGas
+from quintet.components.meshless_gas.diagnostics import step_error
 from quintet.components.meshless_gas.kernels.motion import STAGES
 from quintet.components.meshless_gas.opencl.refusal import refuse_what_needs_the_processor
 from quintet.components.meshless_gas.opencl.stepping import Outcome, Stepping
@@ -91,7 +92,11 @@ class DeviceGas(DeviceComponent):
         outcome = self.stepping.step(dt, host.scheme.shortest_step)
         if outcome.wrong >= 0:
             self._get()
-            raise host.failure([outcome.wrong], dt)
+            share = dt / host.scheme.shortest_step
+            raise step_error(
+                [outcome.wrong], host.motion.domain, host.fluxes.primitive, host.state.time, share,
+                host.params.planar, host.team, host.all_ranks,
+            )  # fmt: skip
         flows = [host.fluxes.flows.copy(), *outcome.flows[:-1]]  # at the begin of each stage
         for (_, _, share), entering in zip(STAGES, flows, strict=True):
             state.entered += share * dt * entering
