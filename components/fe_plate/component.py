@@ -15,6 +15,7 @@ from quintet.components.fe_plate.diagnostics import (
     inside_out,
     motion,
     not_finite,
+    present_velocity,
     require_before_walls,
     totals,
 )
@@ -143,20 +144,16 @@ class FePlate(Component):
     def sample(self, request: Fields) -> Fields:
         """Sample the structure below its faces, hang points on these, or list inner faces."""
         if INNER in request and self.whole:
-            opening = self._open_surface(self.whole)
-            return {f"contact_surface.{key}": a for key, a in opening.described.items()}
+            place = self.built.places, self.params, self.surface, self.all_ranks
+            self.opening = self.opening or OpeningSurface(self.whole, *place)
+            return {f"contact_surface.{key}": a for key, a in self.opening.described.items()}
         port = next(iter(request)).partition(".")[0]
         return mesh_answer(port, request, self.describe())
 
-    def _open_surface(self, whole: Structure) -> OpeningSurface:
-        place = self.built.places, self.params, self.surface, self.all_ranks
-        self.opening = self.opening or OpeningSurface(whole, *place)
-        return self.opening
-
     def bind(self, static: Fields, joined: Keys) -> None:
         """Take the mass of particles that are glued to the nodes, and faces that are touched."""
-        if self.whole and "contact_faces" in joined and eroding_parts(self.params):
-            self._open_surface(self.whole)
+        if "contact_faces" in joined and eroding_parts(self.params):
+            self.sample({INNER: np.ones(1)})
         self.whole = None
         if self.opening:
             self.loaded = self.all_loads.surface = self.opening.nodes
@@ -201,7 +198,11 @@ class FePlate(Component):
     def step(self, dt: float) -> None:
         """Advance by exactly dt [s]: half kick, drift, stresses, half kick."""
         total, damping = self.accumulated, self.params.mass_damping
-        rows, pushes = self.loaded.rows, self._pushes(dt)
+        rows, pushes = self.loaded.rows, self.loads
+        if self.touching:
+            moving = self.state.position[rows], self.state.mean_velocity[rows]
+            open_faces = self.opening.open_faces(self.state) if self.opening else None
+            pushes = pushes + self.touching.push(*moving, open_faces, dt)
         loads = pushes[self.loaded.ids]
         loaded = self.all_loads.write(self.state, pushes, total.time)
         if self.kicks_early:
@@ -226,18 +227,6 @@ class FePlate(Component):
             add_damped(self.model, self.state, 1.0 / decay - 1.0)
         if self.kicks_early:
             self.state.velocity[rows] -= self.half_kick
-
-    def _pushes(self, dt: float) -> Array:
-        """Forces (k, 3) N of partners, and of contact with faces, in a step of dt [s]."""
-        if not self.touching:
-            return self.loads
-        state, rows = self.state, self.loaded.rows
-        moving = state.position[rows], state.mean_velocity[rows]
-        return np.asarray(self.loads + self.touching.push(*moving, self._open_faces(), dt))
-
-    def _open_faces(self) -> Array | None:
-        """1 of each face (m,) that is part of the surface, else 0; None where none may erode."""
-        return self.opening.open_faces(self.state) if self.opening else None
 
     def _kick_early(self, dt: float, loads: Array) -> None:
         """Apply the partners' loads in the step's first half, and not in its second one.
@@ -304,16 +293,9 @@ class FePlate(Component):
             values[REACTION] = penalty.reaction.copy() if penalty else np.zeros((0, 3))
         if not wanted - values.keys():  # of gauges none
             return values
-        state = self.state._replace(velocity=self._velocity())
+        kicks = (self.loaded.rows, self.half_kick) if self.kicks_early else None
+        state = self.state._replace(velocity=present_velocity(self.state.velocity, kicks))
         return values | readings(self.measured, self.built, state, wanted, self.all_ranks)
-
-    def _velocity(self) -> Array:
-        """Velocities (n, 3) m/s at the present time; early loads are those of the last step."""
-        if not self.kicks_early:
-            return self.state.velocity
-        velocity = self.state.velocity.copy()
-        velocity[self.loaded.rows] += self.half_kick
-        return velocity
 
     def save(self) -> Fields:
         """Copy out all state."""
@@ -337,7 +319,8 @@ class FePlate(Component):
         self.accumulated = Accumulated(time, brought, int(steps))
         self.judge.load(state["judge"])
         if self.touching:
-            self.touching.load(state, self._open_faces())
+            open_faces = self.opening.open_faces(self.state) if self.opening else None
+            self.touching.load(state, open_faces)
 
     def begin_from(self, state: Fields) -> None:
         """Begin from the state of another run; times of pressures count from now on.
@@ -379,7 +362,9 @@ class FePlate(Component):
     def view(self) -> Fields:
         """Outer faces with velocity, stress, plastic strain and temperature."""
         nodes, elements = self.all_ranks.nodes, self.all_ranks.elements
-        motion_of = np.hstack([self.state.position[nodes.rows], self._velocity()[nodes.rows]])
+        kicks = (self.loaded.rows, self.half_kick) if self.kicks_early else None
+        velocity = present_velocity(self.state.velocity, kicks)
+        motion_of = np.hstack([self.state.position[nodes.rows], velocity[nodes.rows]])
         gathered = nodes.gather(motion_of), elements.gather(shown(self.places, self.state))
         mesh = self.all_ranks.mesh_to_show(self.mesh, self.built)
         return {} if self.all_ranks.rank else view(mesh, *gathered)

@@ -11,19 +11,23 @@ from quintet.interfaces.errors import SceneError, StepError
 from quintet.interfaces.sums import finite
 
 BEHIND = 1e-6  # of the least edge of elements, by which nodes may begin behind a rigid wall
+Kicks = tuple[Whole | slice, Array]
 
 
-def motion(
-    state: State, mass: Array, gravity: Array, kicks: tuple[Whole | slice, Array] | None
-) -> list[Array]:
+def present_velocity(velocity: Array, kicks: Kicks | None) -> Array:
+    """Velocities (n, 3) m/s at the end of a step, with `kicks` as of `motion`."""
+    if kicks is not None:
+        velocity = velocity.copy()
+        velocity[kicks[0]] += kicks[1]
+    return velocity
+
+
+def motion(state: State, mass: Array, gravity: Array, kicks: Kicks | None) -> list[Array]:
     """Kinetic and potential energies (n,) J of the nodes that this rank moves, of mass (n,) kg.
 
     `kicks` are rows (k,) and velocities (k, 3) m/s that these nodes lack to the end of a step.
     """
-    velocity = state.velocity[: len(mass)]
-    if kicks is not None:
-        velocity = velocity.copy()
-        velocity[kicks[0]] += kicks[1]
+    velocity = present_velocity(state.velocity[: len(mass)], kicks)
     kinetic = 0.5 * mass * (velocity * velocity).sum(axis=1)
     return [kinetic, -mass * (state.position[: len(mass)] @ gravity)]
 

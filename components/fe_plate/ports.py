@@ -70,9 +70,9 @@ def ports(params: FePlateParams) -> Ports:
     mesh = (PLANAR_FACES, PLANAR_NODE_GLUE) if planar else (FACES, NODE_GLUE)
     touched = (PLANAR_CONTACT_SURFACE if planar else CONTACT_SURFACE, OPEN_FACES)
     taken = (NODE_LOAD, NODE_MASS, *((CONTACT_SURFACE_LOAD,) if eroding_parts(params) else ()))
-    given = *mesh, FACE_ACTIVITY, *touched
     if not params.contact_with_faces:
-        lacking = replace(FACE_ACTIVITY, lacks=((CONTACT_FACES.name, UNTOUCHED),))
-        return taken, (*mesh, lacking, *touched, *measured)
-    faces = PLANAR_CONTACT_FACES if planar else CONTACT_FACES
-    return (*taken, faces, CONTACT_ACTIVITY), (*given, CONTACT_LOAD, *measured)
+        activity = replace(FACE_ACTIVITY, lacks=((CONTACT_FACES.name, UNTOUCHED),))
+        return taken, (*mesh, activity, *touched, *measured)
+    touching = PLANAR_CONTACT_FACES if planar else CONTACT_FACES
+    taken = *taken, touching, CONTACT_ACTIVITY
+    return taken, (*mesh, FACE_ACTIVITY, *touched, CONTACT_LOAD, *measured)

@@ -148,7 +148,8 @@ def test_a_block_sticks_below_the_angle_of_friction_and_slides_above(tmp_path, s
         slope_of_velocity = np.polyfit(times[late], velocity[late], 1)[0]
         assert slope_of_velocity == pytest.approx(slope - 0.3, rel=0.1)
     else:
-        assert np.abs(velocity[late]).mean() < 1e-3 * slope * 0.8
+        # It swings on the springs of friction, by 0.03 p/κ = 6 µm and less.
+        assert abs(np.trapezoid(velocity[late], times[late])) < 2e-5
 
 
 def test_contact_goes_on_where_the_mesh_that_computes_erodes(tmp_path):

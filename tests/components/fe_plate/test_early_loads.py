@@ -24,8 +24,8 @@ def test_a_steady_push_accelerates_the_gauges_as_the_motion(port):
     for count in range(1, 4):
         block.take({"node_load.force": np.full((8, 3), PUSH)})
         block.step(DT)
-        given = block.give(frozenset({"node_gauge.velocity", "part_gauge.velocity"}))
+        readings = block.give(frozenset({"node_gauge.velocity", "part_gauge.velocity"}))
         # Contact's forces act from a step's begin on: of the next one half is in it already.
         steps = count + 0.5 * (port == "contact_surface")
-        for velocity in given.values():
+        for velocity in readings.values():
             np.testing.assert_allclose(velocity, steps * DT * PUSH / 125.0, rtol=1e-3)
