@@ -124,7 +124,7 @@ class OneDevice(OneRank):
         self.rows.put_planes()
         self._is_read = False
         travel = self.stages.drift(dt, loaded)
-        if not slack(self.lists.skin, math.sqrt(travel)) >= 0.0:
+        if not slack(self.lists.skin, root(travel)) >= 0.0:
             if not self._renew(travel):
                 return False
             travel = 0.0
@@ -161,10 +161,10 @@ class OneDevice(OneRank):
         report[CONTACT_WORK] = reduced.of_drift["WORK"] + kick["WORK"]
         report[LOAD_WORK] = reduced.of_drift["LOAD_WORK"] + kick["LOAD_WORK"]
         report[TRAVEL], report[TOUCHING] = travel, 0.0
-        report[LARGEST_SPEED] = math.sqrt(kick["VELOCITY2"]) + math.sqrt(kick["ROTATION2"])
+        report[LARGEST_SPEED] = root(kick["VELOCITY2"]) + root(kick["ROTATION2"])
         acceleration2 = max(g[0] * g[0] + g[1] * g[1] + g[2] * g[2], kick["ACCELERATION2"])
         report[LARGEST_ACCELERATION] = (
-            math.sqrt(acceleration2) + math.sqrt(kick["SPIN_UP2"]) + kick["CENTRIPETAL"]
+            root(acceleration2) + root(kick["SPIN_UP2"]) + max(kick["CENTRIPETAL"], 0.0)
         )
         self.state.contact_load[self.rows.count] = reduced.on_ground
         self.lists.touching = int(kick["CONTACTS"])
@@ -204,3 +204,8 @@ class OneDevice(OneRank):
         """Restore a saved state, of a processor or of a device."""
         super().load(saved)
         self._put()
+
+
+def root(square: float) -> float:
+    """Square root of the greatest of squares, below 0 where none of them was a number."""
+    return math.sqrt(max(square, 0.0))

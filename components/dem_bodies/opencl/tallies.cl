@@ -7,8 +7,8 @@
 #define ROOM(columns) __local double room[(columns) * (GROUP + 1)]
 #define TELL(c, number) room[COLUMN(c) + get_local_id(0)] = number
 
-/* The next number of a column that is added up, or of which the greatest is taken; a number that
-   is not finite counts as numba's `max` has it. */
+/* The next number of a column that is added up, or of which the greatest is taken; as numba's `max`
+   has it, what is no number is never the greatest. */
 static double tallied(int is_sum, double total, double number)
 {
     return is_sum ? total + number : max_real(total, number);
@@ -19,8 +19,8 @@ static void tally(__local const double *room, int sums, int columns, __global do
 {
     const int c = get_local_id(0);
     if (c >= columns) return;
-    double total = room[COLUMN(c)];
-    for (int k = 1; k < GROUP; k++) total = tallied(c < sums, total, room[COLUMN(c) + k]);
+    double total = c < sums ? 0 : -FAR;
+    for (int k = 0; k < GROUP; k++) total = tallied(c < sums, total, room[COLUMN(c) + k]);
     part[c * get_num_groups(0) + get_group_id(0)] = total;
 }
 
@@ -30,7 +30,7 @@ __kernel void collect(
 {
     __local double room[GROUP];
     const int c = get_group_id(0), item = get_local_id(0), is_sum = c < sums;
-    double total = is_sum ? 0 : -INFINITY;
+    double total = is_sum ? 0 : -FAR;
     for (int k = item; k < groups; k += GROUP)
         total = tallied(is_sum, total, part[c * groups + k]);
     room[item] = total;

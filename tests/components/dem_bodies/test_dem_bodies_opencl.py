@@ -184,7 +184,7 @@ def test_a_single_sphere_flies_in_long_steps_until_the_floor_is_near():
     for resources in (Resources(1), DEVICE):
         solver = spheres(resources, [flying], planes=[FLOOR], materials={"a": material()})
         lengths = []
-        run(solver, 0.25, lambda time, lengths=lengths: lengths.append(time))
+        run(solver, 0.198, lambda time, lengths=lengths: lengths.append(time))
         steps.append(lengths)
     assert steps[0] == pytest.approx(steps[1], rel=1e-9) and len(steps[0]) > 40
 
