@@ -64,7 +64,10 @@ def _on_a_face(case: ConformCase) -> ConformCase:
     motion = {"position": CORNERS, "velocity": np.zeros((4, 3))}
     return replace(
         case,
-        static=case.static | {f"contact_faces.{key}": array for key, array in TOUCHED.items()},
+        static={
+            **case.static,
+            **{f"contact_faces.{key}": array for key, array in TOUCHED.items()},
+        },
         rest={
             **case.rest,
             **{f"contact_faces.{key}": array for key, array in motion.items()},
