@@ -140,7 +140,7 @@ def test_a_block_of_elements_slides_to_rest_by_friction(tmp_path):
     assert totals.dissipated == pytest.approx(dissipated, rel=0.02)
 
 
-@pytest.mark.parametrize(("slope", "slides"), [(0.27, False), (0.33, True)])
+@pytest.mark.parametrize(("slope", "slides"), [(0.2, False), (0.33, True)])
 def test_a_block_sticks_below_the_angle_of_friction_and_slides_above(tmp_path, slope, slides):
     times, velocity, _ = _sliding(tmp_path, [slope, 0.0, -1.0], 0.0, 0.8)
     late = times > 0.4
@@ -148,7 +148,7 @@ def test_a_block_sticks_below_the_angle_of_friction_and_slides_above(tmp_path, s
         slope_of_velocity = np.polyfit(times[late], velocity[late], 1)[0]
         assert slope_of_velocity == pytest.approx(slope - 0.3, rel=0.1)
     else:
-        # It swings on the springs of friction, by 0.03 p/κ = 6 µm and less.
+        # It swings on the springs of friction, by 0.1 p/κ = 20 µm and less.
         assert abs(np.trapezoid(velocity[late], times[late])) < 2e-5
 
 
