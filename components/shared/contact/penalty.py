@@ -175,9 +175,9 @@ class PenaltyContact:
     def replace_points(self, before: Points, after: Points) -> None:
         """Take other points of a surface, and dissipate the springs of those that are gone."""
         surface = self._surface()
-        self.numbers.dissipated += self._released(before, surface, self.numbers.last)
+        self._dissipate(1.0, before, surface, self.numbers.last)
         self.near = None
-        self.numbers.dissipated -= self._released(after, surface, 0.0)
+        self._dissipate(-1.0, after, surface, 0.0)
 
     def _surface(self) -> Surface:
         """Faces and nodes at a step's begin."""
@@ -190,20 +190,20 @@ class PenaltyContact:
 
         What the particles press on lies further away than what has eroded: no spring gains.
         """
-        self.numbers.dissipated += self._released(points, surface, self.numbers.last)
+        self._dissipate(1.0, points, surface, self.numbers.last)
         self.active, self.near = self.coming, None
         self.touchable = np.unique(self.corner[self.active > 0.0])
-        self.numbers.dissipated -= self._released(points, surface, 0.0)
+        self._dissipate(-1.0, points, surface, 0.0)
 
-    def _released(self, points: Points, surface: Surface, since: float) -> float:
-        """Energy [J] of all normal springs, as places have changed for a time [s].
+    def _dissipate(self, share: float, points: Points, surface: Surface, since: float) -> None:
+        """Dissipate a share of the energy of all normal springs, after a step of some length [s].
 
-        It is 0 in the first step, when nothing has been touched yet.
+        In the first step nothing has been touched yet.
         """
-        if self.numbers.last == 0.0:
-            return 0.0
-        near, _, _ = self._measure(points, surface.velocity, since)
-        return float(released_energy(points, surface, near, self.numbers.last))
+        if self.numbers.last > 0.0:
+            near, _, _ = self._measure(points, surface.velocity, since)
+            energy = released_energy(points, surface, near, self.numbers.last)
+            self.numbers.dissipated += share * energy
 
     def _measure(self, points: Points, moving: Array, dt: float) -> tuple[Near, float, float]:
         """Faces near particles with gaps and weights as they are now, after a step of dt [s].
