@@ -305,7 +305,7 @@ class FePlate(Component):
         saved["loads"] = self.loads.copy()
         saved["half_kick"] = self.loaded.gather(self.half_kick.copy())
         saved["added_mass"] = self.added_mass.added.copy()
-        return saved | dict(self.touching.penalty.save()) if self.touching else saved
+        return saved | dict(self.touching.save()) if self.touching else saved
 
     def load(self, state: Fields) -> None:
         """Restore a saved state, bit for bit."""
@@ -319,8 +319,7 @@ class FePlate(Component):
         self.accumulated = Accumulated(time, brought, int(steps))
         self.judge.load(state["judge"])
         if self.touching:
-            open_faces = self.opening.open_faces(self.state) if self.opening else None
-            self.touching.load(state, open_faces)
+            self.touching.load(state)
 
     def begin_from(self, state: Fields) -> None:
         """Begin from the state of another run; times of pressures count from now on.
@@ -328,7 +327,7 @@ class FePlate(Component):
         Its partners may have pushed fewer or more nodes: those of the coupled faces come first.
         """
         pushed = {key: first_rows(state[key], self.loaded.size) for key in ("loads", "half_kick")}
-        contact = self.touching.penalty.beginning(state) if self.touching else {}
+        contact = self.touching.beginning(state) if self.touching else {}
         super().begin_from({**state, **pushed, **contact})
         self.accumulated.time = 0.0
         self.accumulated.steps = 0  # the first step takes down energies to judge by

@@ -7,7 +7,7 @@ from quintet.components.fe_plate.contact_surface import DEPTH
 from quintet.components.fe_plate.state import Array, Whole
 from quintet.components.shared.contact.kernels import Points
 from quintet.components.shared.contact.moduli import longitudinal_modulus
-from quintet.components.shared.contact.penalty import PenaltyContact
+from quintet.components.shared.contact.penalty import HEAD, PenaltyContact
 from quintet.components.shared.geometry.face_projection import (
     at_points,
     bilinear,
@@ -18,6 +18,7 @@ from quintet.interfaces.component import Fields
 
 ACROSS = 4  # points across a face of the partner, where a link says nothing
 FEWEST, MOST = 2, 16  # points along a side of a face: one alone would let the face turn
+OPEN = f"{HEAD}open"  # key in saved states
 NONE = np.zeros(0)  # of what only spheres have
 NO_SPIN = np.zeros((0, 3)), NONE  # rad/s, and 1/(kg m2)
 NONE_FIXED = np.zeros(0, np.int64)  # the supports of nodes hold them
@@ -98,11 +99,20 @@ class PartnerFaces:
         kicked = self.penalty.kicked[self.rows]  # m/s, in half of the step
         return np.asarray(self.open_shares.T @ ((2.0 / dt * self.mass)[:, None] * kicked))
 
-    def load(self, state: Fields, open_faces: Array | None) -> None:
-        """Restore a saved state, with the faces that are part of the surface in it."""
-        if open_faces is not None:
-            self._open(open_faces)
+    def save(self) -> Fields:
+        """Copy out all state; faces that eroded since the last push still count as open."""
+        return {**self.penalty.save(), OPEN: self.open_faces.copy()}
+
+    def load(self, state: Fields) -> None:
+        """Restore a saved state, bit for bit."""
+        self._open(np.array(state[OPEN]))
         self.penalty.load(state)
+
+    def beginning(self, state: Fields) -> Fields:
+        """Return what `load` needs of the state of another run: its history, where it suits."""
+        former = state.get(OPEN)
+        is_same = former is not None and former.shape == self.open_faces.shape
+        return {**self.penalty.beginning(state), OPEN: former if is_same else self.open_faces}
 
     def _points(self, position: Array, velocity: Array) -> Points:
         rows, shares = self.rows, self.open_shares

@@ -99,6 +99,22 @@ def test_points_of_faces_that_are_not_open_do_not_touch():
     assert faces.penalty.numbers.dissipated == pytest.approx(held, rel=0.01)
 
 
+def test_a_face_that_erodes_before_a_state_is_saved_dissipates_after_it_is_loaded():
+    faces, place = _above(np.ones(4))
+    faces.push(place, np.zeros((4, 3)), np.ones(1), 0.01)
+    saved = {key: array.copy() for key, array in faces.save().items()}
+    restored = _above(np.ones(4))[0]
+    restored.load(saved)
+    begun = _above(np.ones(4))[0]
+    begun.load(begun.beginning(saved))
+    for touching in (faces, restored, begun):
+        touching.push(place, np.zeros((4, 3)), np.zeros(1), 0.01)
+        assert touching.penalty.numbers.dissipated > 0.0
+        assert touching.penalty.numbers == faces.penalty.numbers
+    # A state of another mesh says nothing about these faces.
+    assert (begun.beginning({**saved, "contact/open": np.zeros(2)})["contact/open"] == [0.0]).all()
+
+
 def test_points_that_would_be_too_many_are_said_to_be_fewer():
     assert not _above(np.ones(4))[0].note
     faces, _ = _above(np.ones(4), width=0.1)
