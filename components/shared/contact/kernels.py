@@ -131,7 +131,8 @@ def touch(
             continue
         if is_sphere:
             turn_over_face(points.spin, i, n, last * (radius + gap), slid)
-            dissipated += change_stiffness(loads.slip, loads.held, number, side)
+        # That of a layer changes where it slides onto a stiffer or a thinner face.
+        dissipated += change_stiffness(loads.slip, loads.held, number, side)
         held, lost = friction(loads.slip, number, slid, n, side, surface.friction[face] * push)
         loads.held[number] = held
         energy, dissipated = energy + stored + held, dissipated + lost

@@ -216,6 +216,39 @@ def test_friction_holds_below_its_limit_and_slides_at_it():
     assert contact.slip[0, 0] == pytest.approx(0.5 * push / stiffness)
 
 
+def test_a_spring_of_friction_gains_nothing_on_a_stiffer_face():
+    contact, points = contact_of(1, friction=9.0), points_at([(1.0, 1.0, 0.3)])
+    contact.faces[0][1] = 100.0 * MODULUS
+    points.velocity[:] = (1.0, 0.0, 0.0)
+    for _ in range(2):
+        take(contact)
+        contact.kick(points, 1e-2)
+    held, stretch = contact.held[0], contact.slip[0, 0]
+    points.place[:], points.velocity[:] = (3.0, 1.0, 0.3), 0.0
+    take(contact)
+    contact.forget_rows()
+    contact.kick(points, 1e-2)
+    # It keeps its force: 2 R/M + h/M falls to half.
+    assert contact.slip[0, 0] == pytest.approx(stretch * 1.01 / 2.0)
+    assert contact.held[0] == pytest.approx(held * 1.01 / 2.0)
+    assert contact.held[0] + contact.numbers.dissipated == pytest.approx(held)
+
+
+def test_what_a_spring_of_friction_holds_along_a_normal_that_turns_is_dissipated():
+    contact, points = contact_of(1, friction=9.0), points_at([(3.0, 1.0, 0.3)])
+    points.velocity[:] = (1.0, 0.0, 0.0)
+    for _ in range(2):
+        take(contact)
+        contact.kick(points, 1e-2)
+    held = contact.held[0]
+    points.place[:], points.velocity[:] = (4.3, 1.0, -1.0), 0.0  # beside the wall
+    take(contact)
+    contact.forget_rows()
+    contact.kick(points, 1e-2)
+    assert held > 0.0 and contact.held[0] == pytest.approx(0.0, abs=1e-12 * held)
+    assert contact.numbers.dissipated == pytest.approx(held)
+
+
 def test_deep_penetration_is_warned_of():
     contact = contact_of(1)
     take(contact)
