@@ -161,7 +161,8 @@ def friction(slip, i, slid, n, stiff, limit):  # type: ignore[no-untyped-def]
     -------
     energy, dissipated : float, J
         In the spring, and by slip: ½ k (ξ₀ + ξ₁)·(ξ₀ + Δ - ξ₁), which is what the mean force does
-        beyond the change of the spring's energy.
+        beyond the change of the spring's energy. What the spring held along the normal, which has
+        turned since, is dissipated too.
     """
     along, moved = 0.0, 0.0
     for d in range(3):
@@ -174,7 +175,7 @@ def friction(slip, i, slid, n, stiff, limit):  # type: ignore[no-untyped-def]
     stretch, share = math.sqrt(square), 1.0
     if stiff * stretch > limit:
         share = limit / (stiff * stretch)
-    energy, dissipated = 0.0, 0.0
+    energy, dissipated = 0.0, 0.5 * stiff * along * along
     for d in range(3):
         tried = slip[i, d] + slid[d]
         stretched = share * tried
