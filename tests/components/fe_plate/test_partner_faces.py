@@ -109,8 +109,7 @@ def test_a_face_that_erodes_before_a_state_is_saved_dissipates_after_it_is_loade
     begun.load(begun.beginning(saved))
     for touching in (faces, restored, begun):
         touching.push(place, np.zeros((4, 3)), np.zeros(1), 0.01)
-        assert touching.penalty.numbers.dissipated > 0.0
-        assert touching.penalty.numbers == faces.penalty.numbers
+        assert touching.penalty.numbers.dissipated == faces.penalty.numbers.dissipated > 0.0
     # A state of another mesh says nothing about these faces.
     assert (begun.beginning({**saved, "contact/open": np.zeros(2)})["contact/open"] == [0.0]).all()
 
