@@ -210,8 +210,8 @@ class FePlate(Component):
         decay = math.exp(-0.5 * damping * dt)  # of the kinetic energy, in either half
         if total.steps % EVERY == 0:
             works, is_first = self.state.works(self.model.moving), total.steps == 0
-            kicks = (rows, self.half_kick) if self.kicks_early else None
-            parts = self.added_mass.total()[: self.model.moving], self.model.gravity, kicks
+            # Velocities have the half kick of this step already.
+            parts = self.added_mass.total()[: self.model.moving], self.model.gravity, None
             energies = self.state, motion(self.state, *parts), works, total.brought
             self.judge.note(*energies, self.all_ranks, is_first)
         total.steps += 1
