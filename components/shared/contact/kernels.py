@@ -70,7 +70,7 @@ class Sums(NamedTuple):
     points: float  # 1/s2, largest ω² of a particle on faces at rest
     nodes: float  # 1/s2, largest ω² of what holds a particle, were it at rest
     impact: float  # 1/s2, largest k/m of a particle
-    depth: float  # 1, largest penetration over the radius of the particle
+    depth: float  # 1, largest penetration over the radius of the particle, or as `room_below`
     spread: float  # 1, largest radius of a sphere's contact over the least edge of its element
     limit: float  # s, in which one that is near comes half of the way to a radius below its face
 
@@ -89,7 +89,7 @@ def furthest_from(velocity: Array, mean: Array) -> float:
 
 @njit(**EXACT)
 def touch(
-    points: Points, surface: Surface, near: Near, last: float, dt: float, loads: Loads
+    points: Points, surface: Surface, near: Near, last: float, dt: float, loads: Loads, off: float
 ) -> Sums:
     """Change velocities by the forces on particles that touch a face; each touches the nearest.
 
@@ -105,6 +105,8 @@ def touch(
         Step that begins, all of whose impulse comes at once.
     loads : Loads
         Added to.
+    off : float, 1
+        As in `measure`.
     """
     nodes, weight, is_sphere = near.nodes, near.weight, points.spin.shape[0] > 0
     n, slid = np.empty(3), np.empty(3)
@@ -136,7 +138,7 @@ def touch(
         held, lost = friction(loads.slip, number, slid, n, side, surface.friction[face] * push)
         loads.held[number] = held
         energy, dissipated = energy + stored + held, dissipated + lost
-        deepest = max(deepest, -gap / radius)
+        deepest = max(deepest, -gap / room_below(radius, surface.thickness[face], off))
         half_kick += apply(points, i, nodes, weight, q, n, push, side, dt, loads)
         if is_sphere:
             half_kick += twist(points, i, loads.slip, number, n, dt * side * (radius + gap))
@@ -182,6 +184,15 @@ def shortest_side(x):  # type: ignore[no-untyped-def]
         if square > 0.0:
             shortest = min(shortest, square)
     return math.sqrt(shortest)
+
+
+@njit(**LANEWISE)
+def room_below(radius, thickness, off):  # type: ignore[no-untyped-def]
+    """Depth [m] to which a particle stays on its side of a face before a layer of a thickness [m].
+
+    Deeper than half of a single layer the nearest face of a point of a surface is that behind.
+    """
+    return radius if off > 0.0 else min(radius, 0.5 * thickness)
 
 
 @njit(**LANEWISE)

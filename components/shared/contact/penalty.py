@@ -42,7 +42,9 @@ class Numbers:
     nodes: float = 0.0  # 1/s2, largest ω² of what holds a particle, were it at rest
     impact: float = 0.0  # 1/s2, largest k/m of a particle, as deep as it may come
     spread: float = 0.0  # 1, largest radius of a sphere's contact over the least edge of elements
-    deepest: float = 0.0  # 1, largest penetration so far, over the radius of the particle
+    # 1, largest penetration so far, over the radius of the particle; of points of a surface over
+    # half of the thinner one of both layers.
+    deepest: float = 0.0
     # J, done on the particles by the motion of the faces until the last step's begin
     work: float = 0.0
     second_half: float = 0.0  # J, that the other half of the last step's force added
@@ -158,7 +160,7 @@ class PenaltyContact:
         former, moved = self.reaction, self.position - self.before
         self.reaction, stiffness = np.zeros((nodes, 3)), np.zeros(nodes)
         loads = Loads(self.reaction, stiffness, self.slip, self.held, self.kicked)
-        sums = touch(points, surface, near, last, dt, loads)
+        sums = touch(points, surface, near, last, dt, loads, self.off)
         self.before, numbers.last = self.position.copy(), dt
         if last:
             numbers.work -= 0.5 * float(((former + self.reaction) * moved).sum())
@@ -304,9 +306,9 @@ class PenaltyContact:
         texts = {}
         if self.numbers.deepest > 1.0 and self.off == 0.0:
             texts["contact"] = (
-                "faces must stay outside of the faces that they touch; one went "
-                f"{0.5 * self.numbers.deepest:.3g} of the thickness of its element deep, and "
-                "beyond 1 it would pass through. Raise the link's stiffness, or refine both sides."
+                f"a contact point penetrated {0.5 * self.numbers.deepest:.3g} of the thinner "
+                "element's thickness; beyond 0.5 it may pass through a single layer, at 1 it "
+                "passes through. Raise the link's stiffness, or refine both sides."
             )
         elif self.numbers.deepest > 1.0:
             texts["contact"] = (

@@ -37,8 +37,11 @@ def test_points_of_a_face_have_its_area_and_lie_within_a_distance(name):
         np.testing.assert_allclose(loads, area / len(loads))
 
 
-def _above(mass, gap=-0.1, width=1.0):
-    """Two squares of 1 m², the upper one of masses (4,) kg, that overlap; Pa, m."""
+def _above(mass, gap=-0.1, width=1.0, thickness=1.0):
+    """Two squares of 1 m², the upper one of masses (4,) kg, that overlap; Pa, m.
+
+    The lower one lies before a layer of a thickness.
+    """
     node = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], float)
     layer = {key: np.array([number]) for key, number in
              {"bulk": 2.0 / 3.0, "shear": 1.0, "thickness": 1.0}.items()}  # fmt: skip
@@ -46,7 +49,7 @@ def _above(mass, gap=-0.1, width=1.0):
         "corner": np.array([[0.0, 1.0, 2.0, 3.0]]), "mass": np.full(4, 1e9),
         "width": np.array([width]),
         "friction": np.zeros(1), "stiffness": np.ones(1), "safety": np.ones(1),
-        "points": np.zeros(1), "step": np.array([1e9]), **layer,
+        "points": np.zeros(1), "step": np.array([1e9]), **layer, "thickness": np.array([thickness]),
     }  # fmt: skip
     upper = {"start": node + np.array([0.0, 0.0, gap]), "corner": np.array([[0.0, 3.0, 2.0, 1.0]])}
     upper |= {"mass": mass, **layer}
@@ -125,9 +128,16 @@ def test_points_that_would_be_too_many_are_said_to_be_fewer():
 def test_a_face_that_nearly_passes_through_another_is_warned_of():
     faces, place = _above(np.ones(4), gap=-0.6)
     faces.push(place, np.zeros((4, 3)), None, 0.01)
-    assert (
-        "one went 0.6 of the thickness of its element deep" in faces.penalty.warnings()["contact"]
-    )
+    warning = faces.penalty.warnings()["contact"]
+    assert "a contact point penetrated 0.6 of the thinner element's thickness" in warning
+
+
+def test_a_face_that_may_pass_through_a_thin_layer_is_warned_of():
+    for thickness, is_deep in ((0.25, False), (0.15, True)):
+        faces, place = _above(np.ones(4), gap=-0.1, thickness=thickness)
+        faces.push(place, np.zeros((4, 3)), None, 0.01)
+        assert ("contact" in faces.penalty.warnings()) == is_deep
+    assert "penetrated 0.667 of the thinner" in faces.penalty.warnings()["contact"]
 
 
 def test_a_structure_on_several_ranks_touches_no_faces():
