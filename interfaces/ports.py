@@ -139,7 +139,7 @@ CONTACT_FACES = Port(
         # Closed: the last node of a triangle stands twice, edges go forth and back.
         Field("corner", (4,), "1", labels=True),
         *LAYER,
-        Field("width", (), "m"),  # of each face, its longest side at the start
+        Field("width", (), "m"),  # of each face, its shortest side at the start
         Field("friction", (), "1"),  # of each face, Coulomb's coefficient
         Field("stiffness", (), "1"),  # of each face, scale of the penalty stiffness
         Field("safety", (), "1"),  # one row: share of the predicted stable step

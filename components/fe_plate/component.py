@@ -349,9 +349,9 @@ class FePlate(Component):
         return sums
 
     def warnings(self) -> dict[str, str]:
-        """Energy that appears, hourglassing, and motion that bulk viscosity takes."""
+        """Energy that appears, hourglassing, motion that bulk viscosity takes, poor contact."""
         texts = self.judge.warnings()
-        return texts | self.touching.penalty.warnings() if self.touching else texts
+        return texts | self.touching.warnings() if self.touching else texts
 
     def notes(self) -> tuple[str, ...]:
         """Sizes of meshes from files and what of them is left out; integration in thin parts."""

@@ -17,6 +17,7 @@ from quintet.components.shared.geometry.face_projection import (
 from quintet.interfaces.component import Fields
 
 ACROSS = 4  # points across a face of the partner, where a link says nothing
+NARROW = 0.1  # of the partner's faces may be narrower than what points are placed for
 FEWEST, MOST = 2, 16  # points along a side of a face: one alone would let the face turn
 OPEN = f"{HEAD}open"  # key in saved states
 NONE = np.zeros(0)  # of what only spheres have
@@ -46,15 +47,17 @@ class PartnerFaces:
 
     def __init__(self, static: Fields, surface: Fields, velocity: Array) -> None:
         across = int(static["contact_faces.points"].max()) or ACROSS
-        distance = float(np.median(static["contact_faces.width"])) / across  # m
+        narrow = np.quantile(static["contact_faces.width"], NARROW, method="lower")
+        distance = float(narrow) / across  # m
         start, corner = surface["start"], corners(surface["corner"])
         several = points_along(start, corner, distance)
         most = int(several.max(initial=0))
         self.note = ""
         if most > MOST:
             self.note = (
-                f"contact: faces need {most} points along a side, {across} across a face of the "
-                f"partner, and have {MOST}. Set contact_with_faces in the finer mesh, not in this."
+                f"contact: the partner's faces are so fine that {most} points per side would be "
+                f"needed; {MOST} are used and the pressure may be uneven. Set contact_with_faces "
+                "in the finer mesh, or lower points_across of the link."
             )
         self.face, weight, self.area = surface_points(start, corner, np.minimum(several, MOST))
         count = len(self.face)
@@ -113,6 +116,11 @@ class PartnerFaces:
         former = state.get(OPEN)
         is_same = former is not None and former.shape == self.open_faces.shape
         return {**self.penalty.beginning(state), OPEN: former if is_same else self.open_faces}
+
+    def warnings(self) -> dict[str, str]:
+        """Warn of faces that were nearly passed, and of fewer points than are needed."""
+        texts = self.penalty.warnings()
+        return texts | {"contact_points": self.note} if self.note else texts
 
     def _points(self, position: Array, velocity: Array) -> Points:
         rows, shares = self.rows, self.open_shares

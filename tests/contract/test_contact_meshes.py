@@ -4,6 +4,7 @@ import laboratory
 import numpy as np
 import pytest
 
+from quintet.coupler.coupling.links.contact import widths
 from quintet.interfaces.component import outputs_of
 from quintet.interfaces.errors import SceneError
 
@@ -68,6 +69,12 @@ def test_flat_meshes_press_every_element_alike(tmp_path, across, planar):
     for pressure in _pushing(tmp_path, across, planar):
         assert np.abs(pressure / pressure.mean() - 1.0).max() < 0.01
         assert pressure.mean() == pytest.approx(exact, rel=0.01)
+
+
+def test_the_width_of_an_elongated_face_is_its_shortest_side():
+    node = np.array([[0, 0, 0], [10, 0, 0], [10, 1, 0], [0, 1, 0]], float)
+    corner = np.array([[0, 1, 2, 3], [0, 1, 2, 2], [0, 1, 1, 0]])
+    np.testing.assert_allclose(widths(node, corner), [1.0, 1.0, 10.0])
 
 
 def _impact(folder, end=0.35, side=0.0, courant=0.9, **link):

@@ -209,9 +209,10 @@ class Contact(Link):
 
 
 def widths(node: Array, corner: Array) -> Array:
-    """Length (m,) m of the longest side of faces, closed, of their nodes at (k, 3) m."""
+    """Length (m,) m of the shortest side of faces, closed, of their nodes at (k, 3) m."""
     x = node[corner.astype(np.int64)]
-    return np.asarray(np.linalg.norm(x - np.roll(x, 1, axis=1), axis=2).max(axis=1, initial=0.0))
+    side = np.linalg.norm(x - np.roll(x, 1, axis=1), axis=2)
+    return np.asarray(np.where(side > 0.0, side, np.inf).min(axis=1, initial=np.inf))
 
 
 def closed(face: Array) -> Array:

@@ -47,7 +47,7 @@ def _above(mass, gap=-0.1, width=1.0, thickness=1.0):
              {"bulk": 2.0 / 3.0, "shear": 1.0, "thickness": 1.0}.items()}  # fmt: skip
     static = {
         "corner": np.array([[0.0, 1.0, 2.0, 3.0]]), "mass": np.full(4, 1e9),
-        "width": np.array([width]),
+        "width": np.atleast_1d(width),
         "friction": np.zeros(1), "stiffness": np.ones(1), "safety": np.ones(1),
         "points": np.zeros(1), "step": np.array([1e9]), **layer, "thickness": np.array([thickness]),
     }  # fmt: skip
@@ -117,12 +117,17 @@ def test_a_face_that_erodes_before_a_state_is_saved_dissipates_after_it_is_loade
     assert (begun.beginning({**saved, "contact/open": np.zeros(2)})["contact/open"] == [0.0]).all()
 
 
-def test_points_that_would_be_too_many_are_said_to_be_fewer():
-    assert not _above(np.ones(4))[0].note
+def test_points_that_would_be_too_many_are_fewer_and_warned_of():
+    assert not _above(np.ones(4))[0].warnings()
     faces, _ = _above(np.ones(4), width=0.1)
-    assert "faces need 40 points along a side, 4 across a face" in faces.note
-    assert "and have 16. Set contact_with_faces in the finer mesh" in faces.note
+    assert "so fine that 40 points per side would be needed; 16 are used" in faces.note
+    assert faces.warnings() == {"contact_points": faces.note}
     assert len(faces.mass) == 16 * 16
+
+
+def test_points_are_placed_for_the_narrow_faces_of_a_graded_partner():
+    graded = np.repeat([0.5, 2.0], [2, 8])
+    assert len(_above(np.ones(4), width=graded)[0].mass) == 8 * 8
 
 
 def test_a_face_that_nearly_passes_through_another_is_warned_of():
