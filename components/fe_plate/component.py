@@ -336,8 +336,8 @@ class FePlate(Component):
     def totals(self) -> Totals:
         """Mass, momentum and energies, with added mass.
 
-        Internal is strain, plastic work and stabilisation; work is that of pressures, rigid walls
-        and mass damping.
+        Internal is strain, plastic work, stabilisation and springs of contact; work is that of
+        pressures, rigid walls and mass damping; contact dissipates by friction and erosion.
         """
         mass = self.added_mass.total()[: self.model.moving]
         kicks = (self.loaded.rows, self.half_kick) if self.kicks_early else None

@@ -1,4 +1,4 @@
-"""Contact of points of the coupled faces with the faces of a partner's mesh."""
+"""Contact of a grid of points on the coupled faces with the faces of a partner's mesh."""
 
 import numpy as np
 from scipy.sparse import csr_array
@@ -26,13 +26,14 @@ NONE_FIXED = np.zeros(0, np.int64)  # the supports of nodes hold them
 
 
 class PartnerFaces:
-    """Faces that points of the own faces touch: midpoints of equal cells in their ξ and η.
+    """Contact of a grid of points on this mesh's coupled faces with the partner's faces.
 
-    Each point bears the pressure of the penalty spring on its area, and hands it on to the nodes of
-    its face by their shape functions. So a flat surface presses evenly on its own nodes, and on
-    those of the partner to the error of the midpoint rule, which falls with the square of the
-    distance of points over the width of the partner's faces (a "Gauss-point-to-surface" contact:
-    De Lorenzis, Wriggers & Zavarise, GAMM-Mitt. 37 (2014) 85).
+    The points are midpoints of equal cells in ξ and η of each face. Each bears the pressure of the
+    penalty spring on its area; its force is distributed to the nodes by the shape functions. So a
+    flat surface presses evenly on its own nodes, and on those of the partner to the error of the
+    midpoint rule, which falls with the square of the distance of points over the width of the
+    partner's faces (a "Gauss-point-to-surface" contact: De Lorenzis, Wriggers & Zavarise,
+    GAMM-Mitt. 37 (2014) 85).
 
     Parameters
     ----------
@@ -76,7 +77,7 @@ class PartnerFaces:
         self.rows = np.flatnonzero(open_faces[self.face] > 0.0)
         self.open_shares = self.shares[self.rows]
         area = self.area[self.rows]
-        # kg, that an even pressure moves a point as: 1/m_q = Σ N_c A_c/m_c / A_q.
+        # kg, effective mass of a point under uniform pressure: 1/m_q = Σ N_c A_c/m_c / A_q.
         yielding = self.open_shares @ ((self.open_shares.T @ area) / self.node_mass)
         self.mass = area / yielding
 
@@ -99,7 +100,7 @@ class PartnerFaces:
             before, points = points, self._points(position, velocity)
             self.penalty.replace_points(before, points)
         self.penalty.kick(points, dt)
-        kicked = self.penalty.kicked[self.rows]  # m/s, in half of the step
+        kicked = self.penalty.kicked[self.rows]  # m/s, half of the step's change by contact
         return np.asarray(self.open_shares.T @ ((2.0 / dt * self.mass)[:, None] * kicked))
 
     def save(self) -> Fields:

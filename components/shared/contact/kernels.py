@@ -58,7 +58,7 @@ class Loads(NamedTuple):
     stiffness: Array  # (k,) N/m, Σ w k of the particles near nodes; added to
     slip: Array  # (any, 3) m, by the number of a particle: stretch of its tangential spring
     held: Array  # (any,) J, likewise: energy of that spring
-    kicked: Array  # (any, 3) m/s, likewise: half of what the step's force changes its velocity by
+    kicked: Array  # (any, 3) m/s, likewise: half of the step's velocity change by contact
 
 
 class Sums(NamedTuple):

@@ -5,7 +5,7 @@ from quintet.interfaces.errors import SceneError
 
 
 def require_one_rank(what: str, resources: Resources) -> None:
-    """Raise SceneError where what touches faces, ``"bodies"``, is shared among ranks."""
+    """Raise SceneError if the component runs on several ranks; `what` is ``"bodies"``, for one."""
     communicator = resources.communicator
     if communicator is not None and communicator.size > 1:
         raise SceneError(

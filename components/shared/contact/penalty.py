@@ -120,8 +120,8 @@ class PenaltyContact:
         self.reaction = np.zeros((nodes, 3))  # N, on the nodes in the last step
         self.slip = np.zeros((particles, 3))  # m, by the number of a particle
         self.held = np.zeros(particles)  # J, by the same: energy of tangential springs
-        # m/s, by the same: what velocities at a step's end, which have none of the next force yet,
-        # lack to be those of that time.
+        # m/s, by the same: half of the step's velocity change by contact, which velocities at a
+        # step's end, that have none of the next force yet, lack.
         self.kicked = np.zeros((particles, 3))
         self.numbers = Numbers()
         self.near: Near | None = None
@@ -177,9 +177,9 @@ class PenaltyContact:
     def replace_points(self, before: Points, after: Points) -> None:
         """Take other points of a surface, and dissipate the springs of those that are gone."""
         surface = self._surface()
-        self._dissipate(1.0, before, surface, self.numbers.last)
+        self._dissipate(before, surface)
         self.near = None
-        self._dissipate(-1.0, after, surface, 0.0)
+        self._keep(after, surface)
 
     def _surface(self) -> Surface:
         """Faces and nodes at a step's begin."""
@@ -192,20 +192,31 @@ class PenaltyContact:
 
         What the particles press on lies further away than what has eroded: no spring gains.
         """
-        self._dissipate(1.0, points, surface, self.numbers.last)
+        self._dissipate(points, surface)
         self.active, self.near = self.coming, None
         self.touchable = np.unique(self.corner[self.active > 0.0])
-        self._dissipate(-1.0, points, surface, 0.0)
+        self._keep(points, surface)
 
-    def _dissipate(self, share: float, points: Points, surface: Surface, since: float) -> None:
-        """Dissipate a share of the energy of all normal springs, after a step of some length [s].
+    def _dissipate(self, points: Points, surface: Surface) -> None:
+        """Dissipate the energy of all normal springs, before others take their place."""
+        energy = self._released(points, surface, self.numbers.last)
+        self.numbers.dissipated += energy
 
-        In the first step nothing has been touched yet.
+    def _keep(self, points: Points, surface: Surface) -> None:
+        """Take back from what was dissipated the energy of the springs that are there now."""
+        energy = self._released(points, surface, 0.0)
+        self.numbers.dissipated -= energy
+
+    def _released(self, points: Points, surface: Surface, since: float) -> float:
+        """Energy [J] that all normal springs would release, after a step of some length [s].
+
+        None in the first step, in which nothing has been touched yet. Tangential springs that are
+        no longer near are let go meanwhile.
         """
-        if self.numbers.last > 0.0:
-            near, _, _ = self._measure(points, surface.velocity, since)
-            energy = released_energy(points, surface, near, self.numbers.last)
-            self.numbers.dissipated += share * energy
+        if self.numbers.last <= 0.0:
+            return 0.0
+        near, _, _ = self._measure(points, surface.velocity, since)
+        return float(released_energy(points, surface, near, self.numbers.last))
 
     def _measure(self, points: Points, moving: Array, dt: float) -> tuple[Near, float, float]:
         """Faces near particles with gaps and weights as they are now, after a step of dt [s].

@@ -38,7 +38,8 @@ OF_NODES = ("mass",)
 OF_FACES = ("bulk", "shear", "thickness")
 WHY = (
     "a penalty force must follow the motion of both sides in every step: both step once in every "
-    "window, and the particles, which compute the force, step before the mesh that it acts on"
+    "window, and the side with contact_with_faces, which computes the force, steps before the mesh "
+    "that it acts on"
 )
 
 
@@ -62,8 +63,8 @@ class ContactKeys:
     points_across : 1
         Points across a particle, along both sides, that bear its force on the faces below them; 1
         if not given. With 3 flat bodies press alike on faces that the spacing does not divide; it
-        takes more time. It must be 1 for spheres. Of two meshes: points of one across a face of
-        the other, 4 if not given.
+        takes more time. It must be 1 for spheres. Of two meshes: number of contact points across
+        each face of the other mesh, 4 if not given.
     """
 
     between: Between
