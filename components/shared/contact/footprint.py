@@ -6,13 +6,17 @@ import numpy as np
 from numba import njit
 
 from quintet.components.shared.contact.search import (
+    ON,
+    SETTLED,
     Near,
+    away_from,
     gap_of,
     nearest,
     nearest_from,
+    normal_at,
     place_listed,
 )
-from quintet.components.shared.geometry.face_kernels import Array, Whole, place_on
+from quintet.components.shared.geometry.face_kernels import Array, Whole, foot_within, place_on
 from quintet.components.shared.numba_options import EXACT, LANEWISE
 
 BESIDE = 0.1  # of a radius: by how much the foot of one of its points may miss the point
@@ -59,6 +63,8 @@ def measure(
         f, xi, eta = nearest(at, near, q, reach, slack, room)
         if f >= 0:
             gap = gap_of(at, near.x[f], radius, off * radius, room, n)
+            if off == 0.0 and gap == math.inf:
+                gap = behind_valley(at, f, near, q, radius, room, n)
             if gap < -2.0 * radius:
                 passed, gap = max(passed, -gap / radius), math.inf
         if gap > radius:
@@ -72,6 +78,42 @@ def measure(
         for d in range(3):
             near.normal[q, d] = n[d]
     return passed
+
+
+@njit(**LANEWISE)
+def behind_valley(p, face, near, q, radius, room, n):  # type: ignore[no-untyped-def]
+    """Gap [m] of a point below a listed face, and its direction, if it is behind a valley edge.
+
+    Such a point has that edge as nearest point, on two faces at least, and lies below both; beside
+    the border of a surface or a ridge it does not. It is pushed to the edge. `room` has the nearest
+    point, as `foot_within` leaves it, and is overwritten.
+
+    Returns
+    -------
+    float, m
+        ∞ where it is not behind such an edge.
+    """
+    edge, normal, square, gap = np.empty(3), np.empty(3), 0.0, math.inf
+    for d in range(3):
+        edge[d] = room[0, d]
+        square += (p[d] - edge[d]) ** 2
+    distance = math.sqrt(square)
+    for at in range(near.begin[q], near.begin[q + 1]):
+        f = near.face[at]
+        if f == face or away_from(p, near, f) > (distance + ON * radius) ** 2:
+            continue
+        foot_within(p, near.x[f], SETTLED, room)
+        normal_at(near.x[f], room, normal)
+        above, apart = 0.0, 0.0
+        for d in range(3):
+            above += (p[d] - room[0, d]) * normal[d]
+            apart += (room[0, d] - edge[d]) ** 2
+        if above < 0.0 and apart <= (ON * radius) ** 2:
+            gap = -distance
+    if gap < 0.0:
+        for d in range(3):
+            n[d] = (edge[d] - p[d]) / distance
+    return gap
 
 
 @njit(**LANEWISE)

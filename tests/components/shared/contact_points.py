@@ -16,7 +16,7 @@ FACES = np.array([[0, 1, 4, 3], [1, 2, 5, 4], [2, 6, 7, 5]])
 
 def contact_of(
     particles, node=NODES, face=FACES, mass=1.0, friction=0.0, step=1e9, spheres=False, points=1.0,
-    radius=RADIUS,
+    radius=RADIUS, on_surface=False,
 ):  # fmt: skip
     count = len(face)
     static = {
@@ -32,7 +32,7 @@ def contact_of(
         "step": np.array([step]),
     }
     static = {f"contact_faces.{key}": array for key, array in static.items()}
-    return PenaltyContact(static, particles, radius, spheres)
+    return PenaltyContact(static, particles, radius, spheres, on_surface)
 
 
 def take(contact, node=NODES, active=None):

@@ -111,6 +111,28 @@ def test_triangles_and_edges_in_a_plane_are_touched_like_squares():
     np.testing.assert_allclose(edge.reaction[:, 2], [-0.225, -0.675])
 
 
+# Two faces that rise from the edge x = z = 0 to both sides, or fall from it, at 45 degrees.
+@pytest.mark.parametrize(
+    ("rise", "place", "push"),
+    [
+        (1.0, (0.05, 1.0, -0.2), (-0.05, 0.0, 0.2)),  # behind the edge of the valley
+        (1.0, (0.0, 1.0, -0.3), (0.0, 0.0, 0.3)),
+        (1.0, (1.0, 1.0, 0.8), (-0.1, 0.0, 0.1)),  # below the face that rises to the right
+        (1.0, (2.2, 1.0, 1.9), (0.0, 0.0, 0.0)),  # below its plane, beside its border
+        (-1.0, (0.0, 1.0, -0.2), (-0.1, 0.0, 0.1)),  # below both faces of a ridge: the first
+        (-1.0, (0.05, 1.0, 0.2), (0.0, 0.0, 0.0)),  # above the ridge
+    ],
+)
+def test_a_point_of_a_surface_is_pushed_out_of_a_valley_from_behind_its_edge(rise, place, push):
+    node = np.array([[x, y, rise * abs(x)] for y in (0.0, 2.0) for x in (-2.0, 0.0, 2.0)])
+    face = np.array([[0, 1, 4, 3], [1, 2, 5, 4]])
+    contact, points = contact_of(1, node, face, on_surface=True), points_at([place])
+    take(contact, node)
+    contact.kick(points, 1.0)  # 1 N/m on 1 kg
+    np.testing.assert_allclose(points.velocity[0], push, atol=1e-12)
+    np.testing.assert_allclose(contact.reaction.sum(axis=0), -np.array(push), atol=1e-12)
+
+
 def test_of_two_faces_at_the_same_distance_the_first_is_touched():
     place, results = [(2.0, 1.0, 0.3)], []
     for last_face in (-1, 0, 1):
