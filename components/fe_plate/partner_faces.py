@@ -114,8 +114,8 @@ class PartnerFaces:
 
     def beginning(self, state: Fields) -> Fields:
         """Return what `load` needs of the state of another run: its history, where it suits."""
-        former = state.get(OPEN)
-        is_same = former is not None and former.shape == self.open_faces.shape
+        former = state.get(OPEN, self.open_faces)
+        is_same = former.shape == self.open_faces.shape
         return {**self.penalty.beginning(state), OPEN: former if is_same else self.open_faces}
 
     def warnings(self) -> dict[str, str]:
