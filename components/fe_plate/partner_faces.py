@@ -58,7 +58,7 @@ class PartnerFaces:
             self.note = (
                 f"contact: the partner's faces are so fine that {most} points per side would be "
                 f"needed; {MOST} are used and the pressure may be uneven. Set contact_with_faces "
-                "in the finer mesh, or lower points_across of the link."
+                "in the finer mesh, or take faces that are less elongated."
             )
         self.face, weight, self.area = surface_points(start, corner, np.minimum(several, MOST))
         count = len(self.face)
