@@ -21,7 +21,8 @@ from quintet.components.shared.rotations import (
     sub,
 )
 
-LEAST_HEIGHT = 1e-9  # of a radius: who is below a plane is as deep as can be
+# Of a radius: least height of a centre over a plane; lower centres count as this high.
+LEAST_HEIGHT = 1e-9
 
 
 @njit(**INNER)

@@ -15,7 +15,7 @@ from quintet.components.shared.opencl.arrays import DeviceArray
 
 @dataclass(frozen=True, slots=True)
 class DevicePairs:
-    """Pairs as `BallPairs` has them, and which of them list each row."""
+    """`BallPairs` in device memory, and for each row the pairs in which it is the partner."""
 
     count: int
     stride: int  # pairs that arrays have room for
@@ -46,7 +46,7 @@ class DevicePairs:
 
 
 def pairs_of_host(queue: Any, model: Model, balls: BallPairs, lanes: int) -> DevicePairs:
-    """Copy the host's pairs with their history; so many are computed at once."""
+    """Copy the host's pairs with their history; `lanes` pairs per work item."""
     count, rows = len(balls.partner), len(balls.begin) - 1
     stride = -(-count // lanes) * lanes
     to_ball = np.flatnonzero(balls.partner < rows)

@@ -34,7 +34,7 @@ class DeviceRows:
         self.listed = DeviceArray(queue, state.listed_centre.shape)
         self.inverse = DeviceArray(queue, (self.count, 2))
         self.body, self.material = (DeviceArray(queue, (self.count,), np.int64) for _ in range(2))
-        self._spare: dict[int, DeviceArray] = {}  # by the words of an array
+        self._spare: dict[int, DeviceArray] = {}  # buffers for sorting, by their number of words
         self.is_sorted_apart = False  # whether the host's rows have another order
         self._packed = DeviceArray(queue, (13 * self.count,))
         self.plane, self._planes = DeviceArray(queue, model.plane.shape), np.zeros((0, 4))

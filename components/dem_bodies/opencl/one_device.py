@@ -1,8 +1,8 @@
 """All rows on an OpenCL device, in the place of `ranks/one.py`.
 
-The host makes the rows and computes outputs: rows are copied into its state before. Between these,
-a step copies back the numbers of the report. Where the device is the processor itself the host
-sorts rows and lists pairs; other devices do so themselves, in the same order.
+The host builds the rows and computes outputs, from rows copied back first. A step copies back only
+its sums and extremes. If the device is the processor, the host sorts rows and lists pairs; other
+devices do it themselves, in the same order.
 """
 
 import math
@@ -39,14 +39,15 @@ from quintet.components.shared.opencl.devices import build, device_of, require_d
 from quintet.components.shared.search.verlet_list import slack
 from quintet.interfaces.component import Fields, Resources
 
-LANES_OF_PROCESSORS = 4  # doubles in one of its vectors; other devices make lanes of pairs
+# Pairs that a work item of a processor computes together (SIMD lanes); 1 on other devices.
+LANES_OF_PROCESSORS = 4
 
 
 class DeviceLists(ContactLists):
-    """Lists of the host, of which a device has the history, and perhaps newer ones."""
+    """Pair lists on the host; history, and after a device search newer lists, are on the device."""
 
     pairs: DevicePairs  # of the device
-    are_of_device = False  # whether the host's pairs are older ones
+    are_of_device = False  # whether the device has listed pairs since the host read them
     touching = 0  # most contacts of a row, as the device counts them
 
     def count_contacts(self, listed: bool = False) -> int:
@@ -207,5 +208,5 @@ class OneDevice(OneRank):
 
 
 def root(square: float) -> float:
-    """Square root of the greatest of squares, below 0 where none of them was a number."""
+    """Root of a maximum of squares; 0 if all were NaN."""
     return math.sqrt(max(square, 0.0))

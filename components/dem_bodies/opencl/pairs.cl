@@ -41,7 +41,8 @@ static double4 apart(double4 at, double4 other, int number, __global const doubl
     return (double4)(d.f0, d.f1, d.f2, 0);
 }
 
-/* Motion of both rows of a lane's pair, and its constants. Lanes beyond the last pair have it. */
+/* Motion of both rows of a lane's pair, and its constants. Lanes past the end repeat the last pair;
+   IN_COUNT masks their energy. */
 #define READ_PAIR(lane, part) \
     const int k##lane = min(first + lane, count - 1), b##lane = partner[k##lane]; \
     const int p##lane = 4 * row[k##lane], q##lane = 4 * min(b##lane, rows - 1); \

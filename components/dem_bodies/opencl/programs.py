@@ -30,9 +30,9 @@ from quintet.components.shared.search.cells import LAYER, ROW, key_of
 HERE = Path(__file__).parent
 VECTOR, TURN = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0)
 WIDTH = 3  # vectors of four numbers of a pair's constants
-# Columns of the numbers that kernels reduce over all rows or pairs: sums first, then what the
-# greatest is taken of. Works [J]; square of the way since pairs were listed [m²], and whether an
-# orientation is not finite.
+# Columns of the numbers that kernels reduce over all rows or pairs: sums first, then maxima.
+# Works [J]; square of the way since pairs were listed [m²], and whether an orientation is not
+# finite.
 DRIFT_SUMS, DRIFT = 2, ("WORK", "LOAD_WORK", "TRAVEL", "BROKEN")
 # Elastic energy [J]; overlap [m], that over the smaller radius, and S_n/m* [(rad/s)²].
 PAIR_SUMS, PAIRS = 1, ("ENERGY", "OVERLAP", "RELATIVE", "STIFFNESS")

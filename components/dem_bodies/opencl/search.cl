@@ -126,8 +126,8 @@ __kernel void list_incoming(
     )
 }
 
-/* History of the pairs that touched; it is that of the pair's first ball, which may have become
-   its second. */
+/* History of pairs that touched; tangential force changes sign if the pair's balls have changed
+   places. */
 __kernel void carry_history(
     int count, int rows, __global const long2 *key, __global const int *row,
     __global const int *partner, int former_stride, __global const int *former_begin,
@@ -153,7 +153,7 @@ __kernel void carry_history(
 #endif
 }
 
-/* Constants of each pair: a plane is a ball without end. */
+/* Constants of each pair: a plane is a ball of infinite radius. */
 __kernel void write_constants(
     int count, int rows, int materials, __global const int *row, __global const int *partner,
     __global const double4 *motion, __global const double2 *inverse, __global const long *material,

@@ -34,7 +34,7 @@ class Search:
     rows : DeviceRows
     model : Model
     skin : float, m
-        Distance within which pairs are listed.
+        Gap up to which pairs are listed.
     rolls : bool
         Whether any pair resists rolling.
     """

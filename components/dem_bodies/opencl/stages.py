@@ -44,7 +44,7 @@ class Tally:
 
 
 class Stages:
-    """Stages of one packing.
+    """Kernel launches of a step.
 
     Parameters
     ----------

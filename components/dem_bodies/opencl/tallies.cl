@@ -7,14 +7,14 @@
 #define ROOM(columns) __local double room[(columns) * (GROUP + 1)]
 #define TELL(c, number) room[COLUMN(c) + get_local_id(0)] = number
 
-/* The next number of a column that is added up, or of which the greatest is taken; as numba's `max`
-   has it, what is no number is never the greatest. */
+/* The next number of a column that is added up, or of which the maximum is taken; NaN is never the
+   maximum, as in numba. */
 static double tallied(int is_sum, double total, double number)
 {
     return is_sum ? total + number : max_real(total, number);
 }
 
-/* Reduce the columns of a group, of which the first are sums; its items have all told. */
+/* Reduce the columns of a group, of which the first are sums, after all items have stored. */
 static void tally(__local const double *room, int sums, int columns, __global double *part)
 {
     const int c = get_local_id(0);
