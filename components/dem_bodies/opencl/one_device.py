@@ -111,26 +111,32 @@ class OneDevice(OneRank):
         lists.are_of_device = False
         lists.note_contacts()
         self.stages.follow(lists.pairs)
-        self._is_read = True
+        self._has_rows = self._has_pairs = True
+
+    def _read_rows(self) -> None:
+        """Copy rows to the host, unless they are there."""
+        if not self._has_rows:
+            self.rows.get()
+            self._has_rows = True
 
     def _read(self) -> None:
         """Copy rows and pairs to the host, unless they are there."""
-        if not self._is_read:
-            self.rows.get()
+        self._read_rows()
+        if not self._has_pairs:
             self.lists.read()
-            self._is_read = True
+            self._has_pairs = True
 
     def advance(self, state: State, dt: float, loaded: bool) -> bool:
         """Advance by dt [s]; return False where a position is not finite."""
         self.rows.put_planes()
-        self._is_read = False
+        self._has_rows = self._has_pairs = False
         travel = self.stages.drift(dt, loaded)
         if not slack(self.lists.skin, root(travel)) >= 0.0:
             if not self._renew(travel):
                 return False
             travel = 0.0
         reduced = self.stages.touch_and_kick(dt, loaded)
-        self._is_read = False
+        self._has_rows = self._has_pairs = False
         self._report(reduced, travel)
         return True
 
@@ -171,7 +177,7 @@ class OneDevice(OneRank):
         self.lists.touching = int(kick["CONTACTS"])
         self._is_finite = reduced.of_drift["BROKEN"] == 0.0
         if self.rows.count == 1:
-            self._read()  # its clearance limits the step
+            self._read_rows()  # its clearance limits the step
 
     def is_finite(self) -> bool:
         """Whether all rotations are finite, as the device found them."""
@@ -192,8 +198,14 @@ class OneDevice(OneRank):
         return self.rows.motion()
 
     def whole(self, *names: str) -> tuple[Model, State]:
-        """Model and state of all rows, copied from the device."""
-        self._read()
+        """Model and state of all rows, copied from the device; pairs too if no array is named.
+
+        Pairs cost more: after a search on the device the host indexes all of them.
+        """
+        if names:
+            self._read_rows()
+        else:
+            self._read()
         return self.model, self.state
 
     def pairs_of_all(self) -> BallPairs | None:
