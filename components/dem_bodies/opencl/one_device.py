@@ -99,7 +99,6 @@ class OneDevice(OneRank):
         if not device.is_processor:  # which lists pairs faster without a device's sort
             self._search = Search(kernels, self.rows, self.model, lists.skin, rolls)
         self.stages = Stages(kernels, self.rows, self.model, self._lanes)
-        self._is_finite = True
         self._put()
 
     def _put(self) -> None:
@@ -112,6 +111,7 @@ class OneDevice(OneRank):
         lists.note_contacts()
         self.stages.follow(lists.pairs)
         self._has_rows = self._has_pairs = True
+        self._is_finite = False  # not known before a step
 
     def _read_rows(self) -> None:
         """Copy rows to the host, unless they are there."""
@@ -167,7 +167,7 @@ class OneDevice(OneRank):
         report[ELASTIC_ENERGY] = pairs["ENERGY"] + reduced.rolling_energy
         report[CONTACT_WORK] = reduced.of_drift["WORK"] + kick["WORK"]
         report[LOAD_WORK] = reduced.of_drift["LOAD_WORK"] + kick["LOAD_WORK"]
-        report[TRAVEL], report[TOUCHING] = travel, 0.0
+        report[TRAVEL], report[TOUCHING] = max(travel, 0.0), 0.0
         report[LARGEST_SPEED] = root(kick["VELOCITY2"]) + root(kick["ROTATION2"])
         acceleration2 = max(g[0] * g[0] + g[1] * g[1] + g[2] * g[2], kick["ACCELERATION2"])
         report[LARGEST_ACCELERATION] = (
@@ -180,7 +180,7 @@ class OneDevice(OneRank):
             self._read_rows()  # its clearance limits the step
 
     def is_finite(self) -> bool:
-        """Whether all rotations are finite, as the device found them."""
+        """Whether orientations after the last drift were finite; False before a step."""
         return self._is_finite
 
     def set_loads(self, load: Numbers) -> None:
