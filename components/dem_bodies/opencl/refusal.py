@@ -1,16 +1,29 @@
 """Checks that a device can compute all that the parameters of bodies ask for."""
 
-from quintet.components.dem_bodies.params import DemBodiesParams
-from quintet.components.dem_bodies.shapes.rigid_body import RigidBody
+from quintet.components.dem_bodies.params import DemBodiesParams, Material, Pair
+from quintet.components.dem_bodies.shapes.rigid_body import Plane, RigidBody
 from quintet.components.dem_bodies.shapes.solid import is_ball
 from quintet.components.shared.opencl.limits import Limit, refuse_wrong
 
 # Every key of the bodies stands here, in `SUPPORTED`, or in the table of `limits`: a test fails
-# if a new key is in neither.
+# if a new key is in neither, or if one of the nested tables is not in `SUPPORTED_IN`.
 SUPPORTED = frozenset(
     """materials planes pairs gravity impact_speed steps_per_contact longest_step fixed_step
     contact_forces front_gauge""".split()
 )
+SUPPORTED_IN = {
+    Material: frozenset(
+        "material youngs_modulus poissons_ratio restitution friction rolling_friction".split()
+    ),
+    Pair: frozenset("between friction restitution rolling_friction".split()),
+    Plane: frozenset("point normal material until".split()),
+    # Of kinds; `is_ball` tells those apart that are free spheres.
+    RigidBody: frozenset(
+        """shape position geometry size edge_radius radius corners centres radii file scale
+        agglomerate density mass material orientation velocity angular_velocity locked released_at
+        copies""".split()
+    ),
+}
 
 
 def refuse_what_needs_the_processor(params: DemBodiesParams, device: str) -> None:

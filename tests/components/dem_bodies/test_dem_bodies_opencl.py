@@ -17,6 +17,7 @@ pytest.importorskip("pyopencl")
 from quintet.components.dem_bodies.opencl import one_device
 from quintet.components.dem_bodies.opencl.refusal import (
     SUPPORTED,
+    SUPPORTED_IN,
     limits,
     refuse_what_needs_the_processor,
 )
@@ -222,6 +223,11 @@ def test_every_key_of_the_bodies_is_supported_or_limited():
     )
     assert keys == SUPPORTED | limited.keys() and not SUPPORTED & limited.keys()
     assert limited.keys() == REFUSED.keys()
+
+
+@pytest.mark.parametrize("table", SUPPORTED_IN)
+def test_every_key_of_nested_tables_is_supported(table):
+    assert {field.name for field in fields(table)} == SUPPORTED_IN[table]
 
 
 @pytest.mark.parametrize("key", REFUSED)
