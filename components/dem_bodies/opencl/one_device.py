@@ -38,6 +38,7 @@ from quintet.components.dem_bodies.state import (
 from quintet.components.shared.opencl.devices import build, device_of, require_doubles
 from quintet.components.shared.search.verlet_list import slack
 from quintet.interfaces.component import Fields, Resources
+from quintet.interfaces.errors import SceneError, StepError
 
 # Pairs that a work item of a processor computes together (SIMD lanes); 1 on other devices.
 LANES_OF_PROCESSORS = 4
@@ -132,8 +133,11 @@ class OneDevice(OneRank):
         self._has_rows = self._has_pairs = False
         travel = self.stages.drift(dt, loaded)
         if not slack(self.lists.skin, root(travel)) >= 0.0:
-            if not self._renew(travel):
-                return False
+            try:
+                if not self._renew(travel):
+                    return False
+            except SceneError as error:  # lists have outgrown the memory
+                raise StepError(str(error)) from error
             travel = 0.0
         reduced = self.stages.touch_and_kick(dt, loaded)
         self._has_rows = self._has_pairs = False

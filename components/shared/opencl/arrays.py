@@ -9,6 +9,10 @@ from quintet.components.shared.opencl.devices import opencl
 from quintet.interfaces.errors import SceneError, StepError
 
 GROUP = 64  # work items that a device runs together
+CHOICES = (
+    "Choose fewer or larger items (a larger spacing, fewer spheres), another device, or "
+    'device = "cpu".'
+)
 
 
 class DeviceArray:
@@ -74,8 +78,7 @@ def too_large(device: Any, size: int, largest: int) -> str:
     """Sentence about an array of so many bytes, of which a device has no room."""
     return (
         f"device {device.name.strip()}: an array must have at most {largest} bytes, and all of "
-        f"them {device.global_mem_size}; found one of {size} bytes that has no room. Choose a "
-        'larger spacing, another device, or device = "cpu".'
+        f"them {device.global_mem_size}; found one of {size} bytes that has no room. {CHOICES}"
     )
 
 
@@ -92,8 +95,7 @@ def run(queue: Any, kernel: Any, rows: int, *arguments: Any) -> None:
             raise StepError(
                 f"device {queue.device.name.strip()}: what it computes with must fit into its "
                 f"memory of {queue.device.global_mem_size} bytes; found no room for "
-                f"{sum(sizes)} bytes beside the rest. Choose a larger spacing, another device, or "
-                'device = "cpu".'
+                f"{sum(sizes)} bytes beside the rest. {CHOICES}"
             ) from error
 
 
