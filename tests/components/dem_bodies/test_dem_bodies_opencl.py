@@ -23,6 +23,7 @@ from quintet.components.dem_bodies.opencl.refusal import (
     limits,
     refuse_what_needs_the_processor,
 )
+from quintet.components.dem_bodies.opencl.search import Search
 from quintet.components.shared.opencl.devices import Device, is_accelerator_there
 
 DEVICE = Resources(device="opencl")
@@ -92,8 +93,14 @@ def require_close(processor, device, limit=1e-9):
     assert device.stable_dt() == pytest.approx(processor.stable_dt(), rel=limit)
 
 
-def test_a_device_computes_as_the_processor_does():
-    require_close(*(advanced(spheres(resources), 1000) for resources in (Resources(1), DEVICE)))
+@pytest.mark.parametrize(
+    ("count", "settings", "steps"),
+    [(3, HEAP, 1000), (5, {"planes": CORNER}, 100)],
+    ids=["one group of rows", "two groups of rows"],
+)
+def test_a_device_computes_as_the_processor_does(count, settings, steps):
+    solvers = (spheres(resources, heap(count), **settings) for resources in (Resources(1), DEVICE))
+    require_close(*(advanced(solver, steps) for solver in solvers))
 
 
 def test_loads_turn_and_push_as_on_the_processor():
@@ -144,23 +151,37 @@ def test_lanes_of_pairs_are_close_to_single_pairs(monkeypatch):
     require_close(first, advanced(spheres(DEVICE), 100), 1e-12)
 
 
-def loose():
+def loose(count=3):
     """Spheres that fly in all directions between planes, of which pairs are often listed again."""
     random = np.random.default_rng(3)
-    return [body | {"velocity": random.uniform(-1.0, 1.0, 3).tolist()} for body in heap()]
+    return [body | {"velocity": random.uniform(-1.0, 1.0, 3).tolist()} for body in heap(count)]
+
+
+SMOOTH = {"a": material(), "b": material()}
+LISTED = {
+    "rolling": (3, STICKY, HEAP),
+    "no rolling": (3, SMOOTH, HEAP),
+    "two groups of rows": (5, SMOOTH, {"planes": CORNER}),
+    "no planes": (3, SMOOTH, {"planes": []}),
+    "one sphere": (1, SMOOTH, {"planes": CORNER}),
+}
 
 
 @pytest.mark.skipif(is_accelerator_there(), reason="a device that is no processor lists pairs")
-@pytest.mark.parametrize("materials", [STICKY, {"a": material(), "b": material()}])
-def test_pairs_that_a_device_lists_are_those_of_the_host(materials, monkeypatch):
+@pytest.mark.parametrize("case", LISTED)
+def test_pairs_that_a_device_lists_are_those_of_the_host(case, monkeypatch):
+    count, materials, settings = LISTED[case]
     monkeypatch.setattr(one_device, "LANES_OF_PROCESSORS", 1)
-    saved = []
+    saved, searches, renew = [], [], Search.renew
+    monkeypatch.setattr(
+        Search, "renew", lambda self, former: searches.append(former) or renew(self, former)
+    )
     for is_processor in (True, False):
         monkeypatch.setattr(
             Device, "is_processor", property(lambda self, is_it=is_processor: is_it)
         )
-        saved.append(advanced(spheres(DEVICE, loose(), materials, **HEAP), 300).save())
-    assert differing(*saved) == []
+        saved.append(advanced(spheres(DEVICE, loose(count), materials, **settings), 300).save())
+    assert searches and differing(*saved) == []
 
 
 def test_snapshots_go_on_elsewhere_and_on_the_device_with_the_same_bits():
@@ -207,6 +228,17 @@ def test_a_step_that_fails_names_its_body():
         assert bodies, message
         named.append((message.partition(":")[0], bodies[0]))
     assert named[0] == named[1]
+
+
+def test_lists_that_outgrow_the_memory_stop_the_run(monkeypatch):
+    def without_room(*_):
+        raise SceneError("no room")
+
+    solver = advanced(spheres(DEVICE, loose()), 1)
+    monkeypatch.setattr(one_device, "pairs_of_host", without_room)
+    monkeypatch.setattr(Search, "renew", without_room)
+    with pytest.raises(StepError, match="no room"):
+        advanced(solver, 300)
 
 
 def test_a_load_that_is_not_finite_stops_the_run():
