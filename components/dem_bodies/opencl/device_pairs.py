@@ -49,9 +49,9 @@ def pairs_of_host(queue: Any, model: Model, balls: BallPairs, lanes: int) -> Dev
     """Copy the host's pairs with their history; `lanes` pairs per work item."""
     count, rows = len(balls.partner), len(balls.begin) - 1
     stride = -(-count // lanes) * lanes
-    to_ball = np.flatnonzero(balls.partner < rows)
-    listed = balls.partner[to_ball]
-    ends = np.cumsum(np.bincount(listed, minlength=rows))
+    pairs_of_balls = np.flatnonzero(balls.partner < rows)
+    partner_rows = balls.partner[pairs_of_balls]
+    ends = np.cumsum(np.bincount(partner_rows, minlength=rows))
     spring = moment = None
     if balls.rolling_moment is not None:
         spring = DeviceArray.of(queue, _with_room(balls.rolling_moment, stride, 4))
@@ -65,7 +65,7 @@ def pairs_of_host(queue: Any, model: Model, balls: BallPairs, lanes: int) -> Dev
         constants_row=_whole(queue, balls.constants_row),
         constants=DeviceArray.of(queue, constants_of(model, balls)),
         incoming_begin=_whole(queue, np.concatenate([[0], ends])),
-        incoming=_whole(queue, to_ball[np.argsort(listed, kind="stable")]),
+        incoming=_whole(queue, pairs_of_balls[np.argsort(partner_rows, kind="stable")]),
         history=DeviceArray.of(queue, _with_room(balls.history.T, stride, 4).T),
         push=DeviceArray(queue, (2 * stride, 4)),
         spring=spring,
@@ -90,6 +90,8 @@ def constants_of(model: Model, balls: BallPairs) -> Numbers:
     constants = np.zeros((len(balls.constants), 4 * WIDTH))
     constants[:, :7] = balls.constants
     if balls.rolling_moment is not None:
-        _, some = np.unique(balls.constants_row, return_index=True)
-        constants[:, 7:9] = rolling_constants(model, balls.row[some], balls.partner[some])
+        _, first_of_kind = np.unique(balls.constants_row, return_index=True)
+        constants[:, 7:9] = rolling_constants(
+            model, balls.row[first_of_kind], balls.partner[first_of_kind]
+        )
     return constants

@@ -57,13 +57,14 @@ static double4 apart(double4 at, double4 other, int number, __global const doubl
 #define WRITE_PUSH(lane, part) \
     push[2 * (first + lane)] = (double4)( \
         PART(acting.f0.f0, part), PART(acting.f0.f1, part), PART(acting.f0.f2, part), \
-        PART(met.f1, part)); \
+        PART(contact.f1, part)); \
     push[2 * (first + lane) + 1] = (double4)( \
-        PART(turn.f0, part), PART(turn.f1, part), PART(turn.f2, part), 0);
+        PART(force_cross_normal.f0, part), PART(force_cross_normal.f1, part), \
+        PART(force_cross_normal.f2, part), 0);
 
 #define WEIGH(lane, part) \
     PART(weight, part) = damping_weight( \
-        PART(before, part), PART(met.f1, part), PART(closing, part), dt);
+        PART(before, part), PART(contact.f1, part), PART(closing, part), dt);
 
 /* Force and torques of each pair, and its history. */
 __kernel void touch(
@@ -83,21 +84,22 @@ __kernel void touch(
         const tuple_3v v = OVER(b, x, b, y, b, z), end_v = OVER(c, z, c, w, d, x);
         const tuple_3v omega_i = THREE(ib, w, ic, x, ic, y), omega_j = THREE(jb, w, jc, x, jc, y);
         const tuple_3v end_i = THREE(id, y, id, z, id, w), end_j = THREE(jd, y, jd, z, jd, w);
-        const Kinematics met =
+        const Kinematics contact =
             kinematics(r, radii, radius, v, end_v, omega_i, omega_j, end_i, end_j);
-        const reals before = READ(history, 3), closing = -inner_of_lanes(met.f4, met.f0);
-        const mask is_touching = met.f1 > (reals)0;
+        const reals before = READ(history, 3), closing = -inner_of_lanes(contact.f4, contact.f0);
+        const mask is_touching = contact.f1 > (reals)0;
         reals weight = 1;
         if (IS_ANY((before == (reals)0) & is_touching)) { FOR_LANES(WEIGH) }
         const tuple_7v c = {
             EACH(ca, x), EACH(ca, y), EACH(ca, z), EACH(ca, w), EACH(cb, x), EACH(cb, y),
             EACH(cb, z)};
         const tuple_3v spring = {READ(history, 0), READ(history, 1), READ(history, 2)};
-        const tuple_3v roots = {met.f2, sqrt(met.f2), 1 / max_reals(met.f2, (reals)LEAST)};
+        const tuple_3v roots = {
+            contact.f2, sqrt(contact.f2), 1 / max_reals(contact.f2, (reals)LEAST)};
         const Acting acting = contact_force(
-            c, spring, before, met.f0, max_reals(met.f1, (reals)0), roots, weight, met.f3, met.f4,
-            dt);
-        const tuple_3v turn = cross_of_lanes(acting.f0, met.f0);
+            c, spring, before, contact.f0, max_reals(contact.f1, (reals)0), roots, weight,
+            contact.f3, contact.f4, dt);
+        const tuple_3v force_cross_normal = cross_of_lanes(acting.f0, contact.f0);
         WRITE(acting.f1.f0, history, 0);
         WRITE(acting.f1.f1, history, 1);
         WRITE(acting.f1.f2, history, 2);
@@ -105,17 +107,17 @@ __kernel void touch(
         WRITE(inverse, history, 3);
         FOR_LANES(WRITE_PUSH)
         const reals of_springs = IN_COUNT ? acting.f2 : (reals)0;
-        const reals part_of_radius = relative_depth(met.f1, radius, other);
-        const reals stiff = c.f5 * met.f2;
+        const reals part_of_radius = relative_depth(contact.f1, radius, other);
+        const reals stiff = c.f5 * contact.f2;
         energy = TOTAL_OF(of_springs);
-        overlap = GREATEST_OF(met.f1);
+        overlap = GREATEST_OF(contact.f1);
         relative = max_real(0, GREATEST_OF(part_of_radius));
         stiffness = max_real(0, GREATEST_OF(stiff));
     }
-    TELL(ENERGY, energy);
-    TELL(OVERLAP, overlap);
-    TELL(RELATIVE, relative);
-    TELL(STIFFNESS, stiffness);
+    STORE(ENERGY, energy);
+    STORE(OVERLAP, overlap);
+    STORE(RELATIVE, relative);
+    STORE(STIFFNESS, stiffness);
     barrier(CLK_LOCAL_MEM_FENCE);
     tally(room, PAIR_SUMS, PAIR_COLUMNS, part);
 }

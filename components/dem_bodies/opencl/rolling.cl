@@ -37,7 +37,7 @@ __kernel void roll(
             energy = r.f2;
         }
     }
-    TELL(0, energy);
+    STORE(0, energy);
     barrier(CLK_LOCAL_MEM_FENCE);
     tally(room, ROLL_COLUMNS, ROLL_COLUMNS, part);
 }

@@ -2,7 +2,8 @@
 
    position, radius | velocity, omega x | omega y z, end velocity x y | end velocity z, end omega
 
-   Loads and loads of contacts are six numbers of each row. */
+   Loads and loads of contacts are six numbers of each row. Printed laws take them as tuples, named
+   `force_of_load` where the vector is `load_force`. */
 
 #define VECTOR(a) {(a).x, (a).y, (a).z}
 #define OMEGA(row, next) {(row).w, (next).x, (next).y}
@@ -19,18 +20,18 @@ __kernel void drift(
     if (i < balls) {
         const double half_dt = 0.5 * dt;
         const double4 at = motion[4 * i], moving = motion[4 * i + 1], turning = motion[4 * i + 2];
-        const double3 push = vload3(2 * i, contact), turn = vload3(2 * i + 1, contact);
-        const double3 outer = loaded ? vload3(2 * i, load) : 0;
-        const double3 twist = loaded ? vload3(2 * i + 1, load) : 0;
+        const double3 force = vload3(2 * i, contact), torque = vload3(2 * i + 1, contact);
+        const double3 load_force = loaded ? vload3(2 * i, load) : 0;
+        const double3 load_torque = loaded ? vload3(2 * i + 1, load) : 0;
         const double4 q = orientation[i];
         const tuple_3r x = VECTOR(at), v = VECTOR(moving), omega = OMEGA(moving, turning);
         const tuple_3r weight = VECTOR(half_dt * gravity);
-        const tuple_3r force = VECTOR(push), torque = VECTOR(turn);
-        const tuple_3r force_of_load = VECTOR(outer), torque_of_load = VECTOR(twist);
+        const tuple_3r force_of_contacts = VECTOR(force), torque_of_contacts = VECTOR(torque);
+        const tuple_3r force_of_load = VECTOR(load_force), torque_of_load = VECTOR(load_torque);
         const tuple_4r pose = {q.x, q.y, q.z, q.w};
         const Kicked k = half_kick(
-            v, omega, weight, half_dt, inverse[i].x, inverse[i].y, force, torque, force_of_load,
-            torque_of_load);
+            v, omega, weight, half_dt, inverse[i].x, inverse[i].y, force_of_contacts,
+            torque_of_contacts, force_of_load, torque_of_load);
         const Drifted d = drifted(x, pose, k.f0, k.f2, omega, k.f1, dt);
         motion[4 * i] = (double4)(d.f0.f0, d.f0.f1, d.f0.f2, at.w);
         motion[4 * i + 1] = (double4)(k.f0.f0, k.f0.f1, k.f0.f2, k.f1.f0);
@@ -43,10 +44,10 @@ __kernel void drift(
         travel = moved.x * moved.x + moved.y * moved.y + moved.z * moved.z;
         is_broken = !isfinite(d.f1.f0 + d.f1.f1 + d.f1.f2 + d.f1.f3);
     }
-    TELL(WORK, work);
-    TELL(LOAD_WORK, load_work);
-    TELL(TRAVEL, travel);
-    TELL(BROKEN, is_broken);
+    STORE(WORK, work);
+    STORE(LOAD_WORK, load_work);
+    STORE(TRAVEL, travel);
+    STORE(BROKEN, is_broken);
     barrier(CLK_LOCAL_MEM_FENCE);
     tally(room, DRIFT_SUMS, DRIFT_COLUMNS, part);
 }
@@ -63,11 +64,11 @@ __kernel void kick(
 {
     ROOM(KICK_COLUMNS);
     const int i = get_global_id(0);
-    double tell[KICK_COLUMNS] = {0};
+    double sums[KICK_COLUMNS] = {0};
     if (i < balls) {
         const double4 at = motion[4 * i], moving = motion[4 * i + 1];
         double4 turning = motion[4 * i + 2];
-        double3 total = 0, turn = 0;
+        double3 force = 0, torque = 0;
         for (int k = begin[i]; k < begin[i + 1]; k++) {
             const double4 f = push[2 * k];
             if (f.w <= 0) continue;
@@ -75,59 +76,60 @@ __kernel void kick(
 #ifdef ROLLS
             by_pair += moment[k].xyz;
 #endif
-            total += f.xyz;
-            turn += by_pair;
-            tell[CONTACTS] += 1;
+            force += f.xyz;
+            torque += by_pair;
+            sums[CONTACTS] += 1;
             if (partner[k] < rows) continue;
-            const tuple_3r acting = VECTOR(f), place = VECTOR(at);
-            const tuple_3r about_origin = cross_of(acting, place);
-            tell[GROUND] -= f.x;
-            tell[GROUND + 1] -= f.y;
-            tell[GROUND + 2] -= f.z;
-            tell[GROUND + 3] += about_origin.f0 - by_pair.x;
-            tell[GROUND + 4] += about_origin.f1 - by_pair.y;
-            tell[GROUND + 5] += about_origin.f2 - by_pair.z;
+            const tuple_3r acting = VECTOR(f), position = VECTOR(at);
+            const tuple_3r about_origin = cross_of(acting, position);
+            sums[GROUND] -= f.x;
+            sums[GROUND + 1] -= f.y;
+            sums[GROUND + 2] -= f.z;
+            sums[GROUND + 3] += about_origin.f0 - by_pair.x;
+            sums[GROUND + 4] += about_origin.f1 - by_pair.y;
+            sums[GROUND + 5] += about_origin.f2 - by_pair.z;
         }
-        for (int place = incoming_begin[i]; place < incoming_begin[i + 1]; place++) {
-            const int k = incoming[place];
+        for (int slot = incoming_begin[i]; slot < incoming_begin[i + 1]; slot++) {
+            const int k = incoming[slot];
             const double4 f = push[2 * k];
             if (f.w <= 0) continue;
-            total -= f.xyz;
-            turn += (at.w - 0.5 * f.w) * push[2 * k + 1].xyz;
+            force -= f.xyz;
+            torque += (at.w - 0.5 * f.w) * push[2 * k + 1].xyz;
 #ifdef ROLLS
-            turn -= moment[k].xyz;
+            torque -= moment[k].xyz;
 #endif
-            tell[CONTACTS] += 1;
+            sums[CONTACTS] += 1;
         }
-        vstore3(total, 2 * i, contact);
-        vstore3(turn, 2 * i + 1, contact);
+        vstore3(force, 2 * i, contact);
+        vstore3(torque, 2 * i + 1, contact);
         const double half_dt = 0.5 * dt;
-        const double3 outer = loaded ? vload3(2 * i, load) : 0;
-        const double3 twist = loaded ? vload3(2 * i + 1, load) : 0;
+        const double3 load_force = loaded ? vload3(2 * i, load) : 0;
+        const double3 load_torque = loaded ? vload3(2 * i + 1, load) : 0;
         const tuple_3r v = VECTOR(moving), omega = OMEGA(moving, turning);
         const tuple_3r weight = VECTOR(half_dt * gravity);
-        const tuple_3r force = VECTOR(total), torque = VECTOR(turn);
-        const tuple_3r force_of_load = VECTOR(outer), torque_of_load = VECTOR(twist);
+        const tuple_3r force_of_contacts = VECTOR(force), torque_of_contacts = VECTOR(torque);
+        const tuple_3r force_of_load = VECTOR(load_force), torque_of_load = VECTOR(load_torque);
         const Kicked k = half_kick(
-            v, omega, weight, half_dt, inverse[i].x, inverse[i].y, force, torque, force_of_load,
-            torque_of_load);
+            v, omega, weight, half_dt, inverse[i].x, inverse[i].y, force_of_contacts,
+            torque_of_contacts, force_of_load, torque_of_load);
         motion[4 * i + 1] = (double4)(k.f0.f0, k.f0.f1, k.f0.f2, k.f1.f0);
         turning.x = k.f1.f1;
         turning.y = k.f1.f2;
         motion[4 * i + 2] = turning;
-        tell[WORK] = k.f3;
-        tell[LOAD_WORK] = k.f4;
+        sums[WORK] = k.f3;
+        sums[LOAD_WORK] = k.f4;
         const double omega2 = inner(k.f1, k.f1);
-        tell[VELOCITY2] = inner(k.f0, k.f0);
-        tell[ROTATION2] = at.w * at.w * omega2;
-        tell[CENTRIPETAL] = at.w * omega2;
+        sums[VELOCITY2] = inner(k.f0, k.f0);
+        sums[ROTATION2] = at.w * at.w * omega2;
+        sums[CENTRIPETAL] = at.w * omega2;
         if (loaded) {
-            const double3 pull = inverse[i].x * outer + gravity.xyz, up = inverse[i].y * twist;
-            tell[ACCELERATION2] = pull.x * pull.x + pull.y * pull.y + pull.z * pull.z;
-            tell[SPIN_UP2] = at.w * at.w * (up.x * up.x + up.y * up.y + up.z * up.z);
+            const double3 pull = inverse[i].x * load_force + gravity.xyz;
+            const double3 up = inverse[i].y * load_torque;
+            sums[ACCELERATION2] = pull.x * pull.x + pull.y * pull.y + pull.z * pull.z;
+            sums[SPIN_UP2] = at.w * at.w * (up.x * up.x + up.y * up.y + up.z * up.z);
         }
     }
-    for (int c = 0; c < KICK_COLUMNS; c++) TELL(c, tell[c]);
+    for (int c = 0; c < KICK_COLUMNS; c++) STORE(c, sums[c]);
     barrier(CLK_LOCAL_MEM_FENCE);
     tally(room, KICK_SUMS, KICK_COLUMNS, part);
 }

@@ -140,16 +140,17 @@ __kernel void carry_history(
     const int a = key[row[k]].y, b = partner[k] < rows ? (int)key[partner[k]].y : partner[k];
     const int first = min(a, b), second = max(a, b);
     const double sign = b < a ? -1 : 1;
-    __global const double *touched = former_history + 3 * (size_t)former_stride;
-    int source = -1;
+    __global const double *former_inverse_root = former_history + 3 * (size_t)former_stride;
+    int former_pair = -1;
     for (int q = former_begin[first]; q < former_begin[first + 1]; q++)
-        if (former_partner[q] == second && touched[q] != 0) source = q;
-    for (int number = 0; number < 3; number++)
-        history[number * (size_t)stride + k] =
-            source < 0 ? 0 : sign * former_history[number * (size_t)former_stride + source];
-    history[3 * (size_t)stride + k] = source < 0 ? 0 : touched[source];
+        if (former_partner[q] == second && former_inverse_root[q] != 0) former_pair = q;
+    for (int number = 0; number < 3; number++) {
+        const size_t former = number * (size_t)former_stride + former_pair;
+        history[number * (size_t)stride + k] = former_pair < 0 ? 0 : sign * former_history[former];
+    }
+    history[3 * (size_t)stride + k] = former_pair < 0 ? 0 : former_inverse_root[former_pair];
 #ifdef ROLLS
-    spring[k] = source < 0 ? 0 : sign * former_spring[source];
+    spring[k] = former_pair < 0 ? 0 : sign * former_spring[former_pair];
 #endif
 }
 
@@ -167,12 +168,14 @@ __kernel void write_constants(
     const double radius = is_ball ? 1 / (1 / radius_i + 1 / radius_j) : radius_i;
     const double per_mass = inverse[i].x + (is_ball ? inverse[b].x : 0);
     const long other = is_ball ? material[b] : plane_material[b - rows];
-    __global const double *both = material_pairs + 5 * (material[i] * materials + other);
-    const Constants c =
-        pair_constants(both[0], both[1], both[2], both[3], radius, 1 / per_mass);
+    __global const double *material_constants =
+        material_pairs + 5 * (material[i] * materials + other);
+    const Constants c = pair_constants(
+        material_constants[0], material_constants[1], material_constants[2],
+        material_constants[3], radius, 1 / per_mass);
     double arm = 0, per_inertia = 0;
 #ifdef ROLLS
-    arm = both[4] * radius;
+    arm = material_constants[4] * radius;
     per_inertia = inverse_inertia(inverse[i].x, inverse[i].y, radius_i);
     if (is_ball) per_inertia += inverse_inertia(inverse[b].x, inverse[b].y, radius_j);
 #endif

@@ -60,12 +60,12 @@ class Search:
         rows, queue, key = self._rows, self._rows.queue, self._sorted_keys()
         self._sort_rows(key)
         balls, motion = np.int32(rows.count), rows.arrays["motion"]
-        look = (balls, np.int32(self._planes), self._skin, key, motion, rows.plane)
+        search_arguments = (balls, np.int32(self._planes), self._skin, key, motion, rows.plane)
         later, earlier = (DeviceArray(queue, (rows.count,), np.int32) for _ in range(2))
-        self._run("count_near", rows.count, *look, later, earlier)
+        self._run("count_near", rows.count, *search_arguments, later, earlier)
         counts = later.get(), earlier.get()
         pairs = self._room(*counts)
-        self._run("list_near", rows.count, *look, pairs.begin, pairs.row, pairs.partner)
+        self._run("list_near", rows.count, *search_arguments, pairs.begin, pairs.row, pairs.partner)
         self._run(
             "list_incoming", rows.count, balls, self._skin, key, motion, pairs.begin,
             pairs.partner, pairs.incoming_begin, pairs.incoming,
@@ -113,8 +113,8 @@ class Search:
         """Keys (any, 2) of all balls' cells, and their rows, in rising order."""
         rows, size = self._rows, max(1 << (self._rows.count - 1).bit_length(), 64)
         key = DeviceArray(rows.queue, (size, 2), np.int64)
-        numbers = np.int32(rows.count), self._width
-        self._run("number_balls", size, *numbers, rows.arrays["motion"], key)
+        sizes = np.int32(rows.count), self._width
+        self._run("number_balls", size, *sizes, rows.arrays["motion"], key)
         part = 2
         while part <= size:
             distance = part >> 1
@@ -126,14 +126,15 @@ class Search:
 
     def _carry(self, former: DevicePairs, pairs: DevicePairs, key: DeviceArray) -> None:
         """Write the constants of new pairs, and the history of those that touched."""
-        rows, count, all_rows = self._rows, np.int32(pairs.count), np.int32(self._rows.count + 1)
+        rows, count = self._rows, np.int32(pairs.count)
+        rows_with_ground = np.int32(rows.count + 1)
         self._run(
-            "carry_history", pairs.count, count, all_rows, key, pairs.row, pairs.partner,
+            "carry_history", pairs.count, count, rows_with_ground, key, pairs.row, pairs.partner,
             np.int32(former.stride), former.begin, former.partner, former.history, former.spring,
             np.int32(pairs.stride), pairs.history, pairs.spring,
         )  # fmt: skip
         self._run(
-            "write_constants", pairs.count, count, all_rows, np.int32(self._materials), pairs.row,
-            pairs.partner, rows.arrays["motion"], rows.inverse, rows.material,
+            "write_constants", pairs.count, count, rows_with_ground, np.int32(self._materials),
+            pairs.row, pairs.partner, rows.arrays["motion"], rows.inverse, rows.material,
             self._plane_material, self._material_pairs, pairs.constants_row, pairs.constants,
         )  # fmt: skip

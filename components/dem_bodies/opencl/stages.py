@@ -29,12 +29,14 @@ class Reduced(NamedTuple):
 class Tally:
     """The columns of one kernel, reduced by a second kernel."""
 
-    def __init__(self, kernels: Any, rows: int, place: int, sums: int, report: DeviceArray) -> None:
-        columns, groups = COLUMNS[place], -(-rows // GROUP)
+    def __init__(
+        self, kernels: Any, items: int, place: int, sums: int, report: DeviceArray
+    ) -> None:
+        columns, groups = COLUMNS[place], -(-items // GROUP)
         self.part = DeviceArray(report.queue, (columns, groups))
-        numbers = (np.int32(groups), np.int32(sums), np.int32(PLACES[place]))
+        sizes = (np.int32(groups), np.int32(sums), np.int32(PLACES[place]))
         self._collect = Launch(
-            report.queue, opencl().Kernel(kernels, "collect"), columns * GROUP, *numbers,
+            report.queue, opencl().Kernel(kernels, "collect"), columns * GROUP, *sizes,
             self.part, report,
         )  # fmt: skip
 
@@ -70,15 +72,15 @@ class Stages:
             arrays["orientation"], self._drift_tally.part,
         )  # fmt: skip
 
-    def _tally(self, rows: int, place: int, sums: int) -> Tally:
-        return Tally(self._kernels, rows, place, sums, self._report)
+    def _tally(self, items: int, place: int, sums: int) -> Tally:
+        return Tally(self._kernels, items, place, sums, self._report)
 
     def follow(self, pairs: DevicePairs) -> None:
         """Follow new lists."""
         rows, kernels, arrays = self._rows, self._of_kernels, self._rows.arrays
-        count, stride, all_rows = map(np.int32, (pairs.count, pairs.stride, rows.count + 1))
+        count, stride, rows_with_ground = map(np.int32, (pairs.count, pairs.stride, rows.count + 1))
         of_pairs = (
-            count, stride, all_rows, pairs.row, pairs.partner, pairs.constants_row,
+            count, stride, rows_with_ground, pairs.row, pairs.partner, pairs.constants_row,
             pairs.constants, rows.plane, arrays["motion"], pairs.history, pairs.push,
         )  # fmt: skip
         items = pairs.stride // self._lanes
@@ -94,10 +96,10 @@ class Stages:
             rolling = (pairs.spring, pairs.moment, self._roll_tally.part)
             self._roll = Launch(rows.queue, kernels["roll"], pairs.count, *of_pairs, *rolling)
         self._kick = Launch(
-            rows.queue, kernels["kick"], rows.count, np.int32(rows.count), all_rows, self._gravity,
-            rows.inverse, arrays["load"], pairs.begin, pairs.partner, pairs.incoming_begin,
-            pairs.incoming, pairs.push, pairs.moment, arrays["motion"], arrays["contact_load"],
-            self._kick_tally.part,
+            rows.queue, kernels["kick"], rows.count, np.int32(rows.count), rows_with_ground,
+            self._gravity, rows.inverse, arrays["load"], pairs.begin, pairs.partner,
+            pairs.incoming_begin, pairs.incoming, pairs.push, pairs.moment, arrays["motion"],
+            arrays["contact_load"], self._kick_tally.part,
         )  # fmt: skip
         self._pairs = pairs.count
 

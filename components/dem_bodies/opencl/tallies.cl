@@ -5,7 +5,7 @@
 
 #define COLUMN(c) ((c) * (GROUP + 1))
 #define ROOM(columns) __local double room[(columns) * (GROUP + 1)]
-#define TELL(c, number) room[COLUMN(c) + get_local_id(0)] = number
+#define STORE(c, number) room[COLUMN(c) + get_local_id(0)] = number
 
 /* The next number of a column that is added up, or of which the maximum is taken; NaN is never the
    maximum, as in numba. */
