@@ -28,7 +28,7 @@ LEAST_HEIGHT = 1e-9
 @njit(**INNER)
 def half_kick(
     v: Vector, ω: Vector, half_gravity: Vector, half: float, inverse_mass: float,
-    inverse_moment: float, force: Vector, torque: Vector, outer: Vector, twist: Vector,
+    inverse_moment: float, force: Vector, torque: Vector, load_force: Vector, load_torque: Vector,
 ) -> tuple[Vector, Vector, Vector, float, float]:  # fmt: skip
     """Half a step of a ball's velocities.
 
@@ -42,7 +42,7 @@ def half_kick(
     inverse_mass, inverse_moment : float, 1/kg and 1/(kg m²)
     force, torque : (3,) N and N m
         Of contacts.
-    outer, twist : (3,) N and N m
+    load_force, load_torque : (3,) N and N m
         Force and torque from outside.
 
     Returns
@@ -53,11 +53,11 @@ def half_kick(
     work, load_work : float, J
         Of contacts, and from outside.
     """
-    change = kick(half_gravity, half * inverse_mass, force, outer)
+    change = kick(half_gravity, half * inverse_mass, force, load_force)
     v = axpy(1.0, change, v)
-    end_ω = kick_rotation(ω, half * inverse_moment, torque, twist)
+    end_ω = kick_rotation(ω, half * inverse_moment, torque, load_torque)
     work = kick_work(half, force, torque, v, change, ω, end_ω)
-    load_work = kick_work(half, outer, twist, v, change, ω, end_ω)
+    load_work = kick_work(half, load_force, load_torque, v, change, ω, end_ω)
     return v, end_ω, change, work, load_work
 
 

@@ -41,9 +41,9 @@ def kick_body(
     """Half kick of a body that is no ball: change of v, new ω, and works [J]."""
     half_gravity, motion = scaled(half, vector(model.gravity, 0)), state.motion
     force, torque = row_vector(state.contact_load, i), row_vector(state.contact_load, i, 3)
-    outer, twist = row_vector(state.load, i), row_vector(state.load, i, 3)
-    change = kick(half_gravity, half * model.inverse_mass[i], force, outer)
-    momentum = kick_rotation(row_vector(state.angular_momentum, i), half, torque, twist)
+    load_force, load_torque = row_vector(state.load, i), row_vector(state.load, i, 3)
+    change = kick(half_gravity, half * model.inverse_mass[i], force, load_force)
+    momentum = kick_rotation(row_vector(state.angular_momentum, i), half, torque, load_torque)
     if model.locked[i]:
         change, momentum = masked(model.free, i, 0, change), masked(model.free, i, 3, momentum)
         before = locked_angular_velocity(model, state, i)
@@ -58,4 +58,4 @@ def kick_body(
     set_row_vector(motion, i, VELOCITY, v)
     set_row_vector(motion, i, OMEGA, ω)
     work = kick_work(half, force, torque, v, change, before, ω)
-    return change, ω, work, kick_work(half, outer, twist, v, change, before, ω)
+    return change, ω, work, kick_work(half, load_force, load_torque, v, change, before, ω)

@@ -57,11 +57,11 @@ def drift_balls(
     for i in range(start, end):
         m, c, to = COLUMNS * i, 6 * i, 6 * i if loaded else 0
         force, torque = vector(contact, c), vector(contact, c + 3)
-        outer, twist = vector(load, to), vector(load, to + 3)
+        load_force, load_torque = vector(load, to), vector(load, to + 3)
         before = vector(motion, m + OMEGA)
         v, ω, change, done, by_load = half_kick(
             vector(motion, m + VELOCITY), before, half_gravity, half, inverse_mass[i],
-            inverse_moment[i], force, torque, outer, twist,
+            inverse_moment[i], force, torque, load_force, load_torque,
         )  # fmt: skip
         work, load_work = work + done, load_work + by_load
         x, q, end_v, end_ω = drifted(
@@ -104,9 +104,9 @@ def drift_body(model: Model, state: State, i: int, dt: float) -> tuple[float, fl
         set_row_vector(motion, i, OMEGA, rotate_locked(model, state, i, dt))
     else:
         set_row_vector(motion, i, OMEGA, rotate_body(model, state, i, dt))
-    torque, twist = row_vector(state.contact_load, i, 3), row_vector(state.load, i, 3)
+    torque, load_torque = row_vector(state.contact_load, i, 3), row_vector(state.load, i, 3)
     # The inverse inertia of a locked body leaves out what torques do about locked axes.
-    x, y, z = kick_rotation(row_vector(state.angular_momentum, i), half, torque, twist)
+    x, y, z = kick_rotation(row_vector(state.angular_momentum, i), half, torque, load_torque)
     end_ω = symmetric_product(state.world_inverse_inertia, i, x, y, z)
     if model.locked[i] and turns_evenly(model, i):
         end_ω = row_vector(motion, i, OMEGA)
@@ -192,10 +192,10 @@ def end_kick_balls(
     for i in range(start, end):
         m, c, to = COLUMNS * i, 6 * i, 6 * i if loaded else 0
         force, torque = vector(contact, c), vector(contact, c + 3)
-        outer, twist = vector(load, to), vector(load, to + 3)
+        load_force, load_torque = vector(load, to), vector(load, to + 3)
         v, ω, _, done, by_load = half_kick(
             vector(motion, m + VELOCITY), vector(motion, m + OMEGA), half_gravity, half,
-            inverse_mass[i], inverse_moment[i], force, torque, outer, twist,
+            inverse_mass[i], inverse_moment[i], force, torque, load_force, load_torque,
         )  # fmt: skip
         set_vector(motion, m + VELOCITY, v)
         set_vector(motion, m + OMEGA, ω)
