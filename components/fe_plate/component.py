@@ -206,7 +206,11 @@ class FePlate(Component):
         loads = pushes[self.loaded.ids]
         loaded = self.all_loads.write(self.state, pushes, total.time)
         if self.kicks_early:
-            self._kick_early(dt, loads)
+            # Forces of glue and contact are those at the step's begin: half a step late they would
+            # feed energy in. So they act in its first half, and not in its second one.
+            half, model = 0.5 * dt, self.model
+            self.half_kick = half * model.inverse_mass[rows, None] * loads * model.free[rows]
+            self.state.velocity[rows] += self.half_kick
         decay = math.exp(-0.5 * damping * dt)  # of the kinetic energy, in either half
         if total.steps % EVERY == 0:
             works, is_first = self.state.works(self.model.moving), total.steps == 0
@@ -227,17 +231,6 @@ class FePlate(Component):
             add_damped(self.model, self.state, 1.0 / decay - 1.0)
         if self.kicks_early:
             self.state.velocity[rows] -= self.half_kick
-
-    def _kick_early(self, dt: float, loads: Array) -> None:
-        """Apply the partners' loads in the step's first half, and not in its second one.
-
-        Forces of glued particles and of contact are those at the step's begin: half a step late
-        they would feed energy in.
-        """
-        rows = self.loaded.rows
-        push = 0.5 * dt * self.model.inverse_mass[rows, None] * loads * self.model.free[rows]
-        self.state.velocity[rows] += push
-        self.half_kick = push
 
     def _write_forces(self, dt: float, loaded: bool) -> float:
         """Advance the elements by a step and the nodes' velocities by half; return the bound."""

@@ -8,7 +8,13 @@ from quintet.components.particle_dynamics import MANIFEST, diagnostics
 from quintet.components.particle_dynamics.build import build, initial_state
 from quintet.components.particle_dynamics.diagnostics import CHECKED, Losses
 from quintet.components.particle_dynamics.energies import EnergyBudget
-from quintet.components.particle_dynamics.features import bathed, model, rows_of, wall_of
+from quintet.components.particle_dynamics.features import (
+    bath_temperatures,
+    bathed,
+    model,
+    rows_of,
+    wall_of,
+)
 from quintet.components.particle_dynamics.integrators import LIMIT, damped_step
 from quintet.components.particle_dynamics.params import ParticleLatticeParams
 from quintet.components.particle_dynamics.ports import SHOWS
@@ -49,7 +55,9 @@ class ParticleLattice(Component):
         built = build(params)
         self.bathed = bathed(built.start, baths)
         whole = model(params, built, self.bathed)
-        state = initial_state(params, built.start, whole, self._bath_temperatures())
+        state = initial_state(
+            params, built.start, whole, bath_temperatures(self.bathed, self.params.baths)
+        )
         self.rows = rows_of(resources, params, built, state, whole)
         self.built = self.rows.reduced(built)
         self.wall = wall_of(self.bathed, baths, self.rows.bathed)
@@ -171,11 +179,6 @@ class ParticleLattice(Component):
         self.rows.average_from(begin)
         self.budget.begin_averages(begin)
 
-    def _bath_temperatures(self) -> Array:
-        """Temperatures (b,) K of all bathed points as the scene has them."""
-        baths = np.array([bath.temperature for bath in self.params.baths], float)
-        return np.asarray(baths[self.bathed.bath])
-
     def begin_from(self, state: Fields) -> None:
         """Begin from the state of another run, with the baths and frozen points of this one.
 
@@ -183,7 +186,7 @@ class ParticleLattice(Component):
         """
         begun = {**state, "kinetic": np.zeros_like(state["kinetic"])}
         if len(state["temperature"]) == len(self.bathed.point):
-            begun["temperature"] = self._bath_temperatures()
+            begun["temperature"] = bath_temperatures(self.bathed, self.params.baths)
         for name in ("velocity", "acceleration"):
             begun[name] = np.array(state[name])
             begun[name][self.built.frozen] = 0.0

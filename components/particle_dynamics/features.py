@@ -96,6 +96,11 @@ def _partner(start: Array, place: Array, lattice: Lattice, drive: Drive) -> int:
     return int(second)
 
 
+def bath_temperatures(bathed: Bathed, baths: tuple[Bath, ...]) -> Array:
+    """Temperatures (b,) K of all bathed points as the scene has them."""
+    return np.array([bath.temperature for bath in baths], float)[bathed.bath]
+
+
 def bathed(start: Array, baths: tuple[Bath, ...]) -> Bathed:
     """Points in baths; each box must hold points that no other bath has."""
     slack = 1e-9 * float(np.abs(start).max() + 1e-300)

@@ -4,10 +4,14 @@ import math
 from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 
 from quintet.components.particle_dynamics.integrators import LIMIT, STAGES
 from quintet.components.particle_dynamics.spheres import MANIFEST
+from quintet.components.particle_dynamics.spheres.accelerations import (
+    Flags,
+    acceleration,
+    free_acceleration,
+)
 from quintet.components.particle_dynamics.spheres.build import build
 from quintet.components.particle_dynamics.spheres.diagnostics import totals, warnings
 from quintet.components.particle_dynamics.spheres.features import spheres_of
@@ -41,7 +45,6 @@ ROUNDING = 1e-9  # of a step, by which the time of a launch may be missed
 CLOSING = 0.25  # of the smallest diameter, by which two may come nearer in a step
 TOUCHING = 0.005  # of the smaller diameter: the largest overlap at the end of a step
 LOADS = {"load.force": "force", "load.torque": "torque", HEAT_FLOW: "heat"}  # rows of the state
-Flags = NDArray[np.bool_]
 MOST_PARTS = 64  # into which a step is divided where several impacts of a sphere fall into it
 
 
@@ -120,24 +123,13 @@ class ParticleSpheres(Component):
         """Time [s] in which spheres with velocities (n, 3) m/s may come too near to each other."""
         assert self.impacts
         closing = self.impacts.closing_speed(velocity)
-        pull = self.impacts.closing_speed(self._acceleration(flying))
+        pull = self.impacts.closing_speed(
+            acceleration(self.spheres, self.state, self.gravity, flying)
+        )
         if not closing + pull > 0.0:
             return math.inf
         root = math.sqrt(closing**2 + 2.0 * pull * self.room)
         return 2.0 * self.room / (closing + root)
-
-    def _acceleration(self, flying: Flags) -> Array:
-        """Accelerations (n, 3) m/s2 of spheres that fly, by all forces."""
-        loaded = self.state.force / self.spheres.mass[:, None] * flying[:, None]
-        return np.asarray(loaded + self._free_acceleration(flying))
-
-    def _free_acceleration(self, flying: Flags) -> Array:
-        """Accelerations (n, 3) m/s2 of spheres that fly, by gravity and tethers."""
-        pull = self.gravity
-        if self.frequency > 0.0:
-            stiff = (self.spheres.tether / self.spheres.mass)[:, None]  # 1/s2
-            pull = pull - stiff * (self.state.position - self.spheres.start)
-        return np.asarray(pull * flying[:, None])
 
     def take(self, fields: Fields) -> None:
         """Set force [N], torque [N m] and heat [W] on each sphere; they are 0 if absent."""
@@ -194,7 +186,7 @@ class ParticleSpheres(Component):
                 state.position[min(wrong, len(state.position) - 1)],
             )
         if self.impacts is not None:
-            self.impacts.resolve(dt, self._acceleration(state.launched))
+            self.impacts.resolve(dt, acceleration(spheres, state, self.gravity, state.launched))
 
     def check(self) -> None:
         """Refuse a sphere whose rotation or temperature is not finite."""
@@ -220,7 +212,9 @@ class ParticleSpheres(Component):
             "launched": state.launched.astype(float),
         }
         if "spheres.acceleration" in wanted:
-            values["acceleration"] = self._free_acceleration(state.launched)
+            values["acceleration"] = free_acceleration(
+                self.spheres, state, self.gravity, state.launched
+            )
         # Both ports have some fields; all ranks go in one order.
         names = {key.partition(".")[2]: key for key in sorted(wanted)}
         rows = self.rows.give([values[name] for name in names])

@@ -51,8 +51,8 @@ def test_a_launch_is_work_from_outside():
     energies = [t.kinetic + t.potential + t.internal for t in (before, after)]
     assert energies[1] - energies[0] == pytest.approx(after.work, rel=1e-12)
     mass = after.mass
-    given = 0.5 * mass * 100.0**2 + 0.5 * 0.4 * mass * RADIUS**2 * 7.0**2
-    assert after.work == pytest.approx(given, rel=1e-12)
+    launched = 0.5 * mass * 100.0**2 + 0.5 * 0.4 * mass * RADIUS**2 * 7.0**2
+    assert after.work == pytest.approx(launched, rel=1e-12)
 
 
 def test_launches_count_from_the_begin_of_a_run_from_another_state():
