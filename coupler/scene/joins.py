@@ -4,7 +4,6 @@ from collections.abc import Iterator, Mapping
 
 from quintet.coupler.coupling.exchange import Exchange
 from quintet.coupler.coupling.link import Link
-from quintet.coupler.coupling.links.direct import Direct
 from quintet.coupler.scene.scene import ComponentPlan
 from quintet.interfaces.component import Fields
 from quintet.interfaces.errors import SceneError
@@ -51,6 +50,9 @@ def _described(
 
     Links other than direct ones make static fields of samples, which need components.
     """
+    # Start-up: only scenes with kinds that refuse joins load direct links for it.
+    from quintet.coupler.coupling.links.direct import Direct
+
     direct = [link for link in links if isinstance(link, Direct) and name in link.ends]
     lacking = {
         key.partition(".")[0]

@@ -145,11 +145,15 @@ source = "none"
 
 @pytest.mark.parametrize("command", [["study", "two_springs"], ["bench", "echo"]])
 def test_a_file_for_results_that_cannot_be_written_is_told_at_once(tmp_path, capsys, command):
-    for path in (tmp_path, tmp_path / "none" / "found.json"):
+    rules = {
+        tmp_path: "it must be a plain file",
+        tmp_path / "none" / "found.json": "it must be a file that can be written",
+    }
+    for path, rule in rules.items():
         with pytest.raises(SystemExit) as error:
             main([*command, "--json", str(path)])
         assert error.value.code == 2
-        assert f"--json {path}: it must be a file that can be written" in capsys.readouterr().err
+        assert f"--json {path}: {rule}" in capsys.readouterr().err
 
 
 def test_an_endpoint_that_is_none_is_told_to_who_joins(capsys):

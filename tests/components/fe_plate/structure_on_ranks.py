@@ -79,7 +79,7 @@ PARAMS = {
     "plane": {
         "parts": [{**BLOCK, "highest": [0.016, 1.0, 0.02], "elements": [12, 1, 14]}],
         "dimensions": 2,
-        "rigid_walls": [WALL],
+        "rigid_walls": [{**WALL, "normal": [0.0, 0.0, 1.0]}],
     },
 }  # fmt: skip
 FORCED = ("pressed", "bent", "glued")
