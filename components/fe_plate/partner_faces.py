@@ -28,8 +28,8 @@ NONE_FIXED = np.zeros(0, np.int64)  # the supports of nodes hold them
 class PartnerFaces:
     """Contact of a grid of points on this mesh's coupled faces with the partner's faces.
 
-    The points are midpoints of equal cells in ξ and η of each face. Each bears the pressure of the
-    penalty spring on its area; its force is distributed to the nodes by the shape functions. So a
+    Equal cells in ξ and η divide each face; the points are their midpoints. Each point bears the
+    penalty force of its cell; its force is distributed to the nodes by the shape functions. So a
     flat surface presses evenly on its own nodes, and on those of the partner to the error of the
     midpoint rule, which falls with the square of the distance of points over the width of the
     partner's faces (a "Gauss-point-to-surface" contact: De Lorenzis, Wriggers & Zavarise,

@@ -250,7 +250,7 @@ class MeshlessGasParams:
             beside += [f"boundaries.{name} of kind {kind}" for name, kind in walls.items()]
             mistakes.append(
                 "a vortex drifts through a periodic box, in the initial state alone; found "
-                f"{' and '.join(beside)}. Leave out what is there beside it."
+                f"{' and '.join(beside)}. Remove them."
             )
         if self.initial is not None:
             density, *_, pressure = self.initial.primitive(self.gas)

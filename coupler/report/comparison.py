@@ -213,7 +213,7 @@ def _label(ones: list[Expectation], recording: Recording) -> tuple[str, str]:
         _field(expectation, recording),
         {expectation.unit for expectation in ones if expectation.measure in IN_UNIT},
     )
-    quantity = next((other.quantity for other in ones if other.quantity), "")
+    quantity = next((expected.quantity for expected in ones if expected.quantity), "")
     if quantity and len(units) == 1:
         return quantity, units.pop()
     if quantity and abs(expectation.scale) == 1.0:

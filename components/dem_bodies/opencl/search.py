@@ -125,7 +125,7 @@ class Search:
         return key
 
     def _carry(self, former: DevicePairs, pairs: DevicePairs, key: DeviceArray) -> None:
-        """Write the constants of new pairs, and the history of those that touched."""
+        """Write the constants of new pairs; copy the history of pairs that were in contact."""
         rows, count = self._rows, np.int32(pairs.count)
         rows_with_ground = np.int32(rows.count + 1)
         self._run(

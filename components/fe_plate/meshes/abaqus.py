@@ -48,7 +48,7 @@ def require_readable(path: Path) -> None:
 
 
 def _require_sets(path: Path, blocks: list[Block]) -> None:
-    """Refuse sets of which the reader would keep a part, or that it would give other elements."""
+    """Refuse sets that meshio would cut short, or fill with the elements of another set."""
     names: Counter[str] = Counter()
     for block in blocks:
         kind = {"NSET": "NSET", "ELSET": "ELSET", "ELEMENT": "ELSET"}.get(block.keyword, "")

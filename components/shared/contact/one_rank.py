@@ -5,7 +5,10 @@ from quintet.interfaces.errors import SceneError
 
 
 def require_one_rank(what: str, resources: Resources) -> None:
-    """Raise SceneError if the component runs on several ranks; `what` is ``"bodies"``, for one."""
+    """Raise SceneError if the component runs on several ranks.
+
+    `what` names the items in the message, such as ``"bodies"``.
+    """
     communicator = resources.communicator
     if communicator is not None and communicator.size > 1:
         raise SceneError(

@@ -110,11 +110,11 @@ def sphere(velocity, axisymmetric=True, wall=None, **keys):
         ),
         (
             {"box": BOX, "vortex": VORTEX, "zones": [ZONE]},
-            "in the initial state alone; found zones. Leave out",
+            "in the initial state alone; found zones. Remove",
         ),
         (
             {"box": BOX, "vortex": VORTEX, "boundaries": CLOSED},
-            "found boundaries.z- of kind slip and boundaries.z+ of kind slip. Leave out",
+            "found boundaries.z- of kind slip and boundaries.z+ of kind slip. Remove",
         ),
         ({"box": BOX, "initial": None, "riemann": TUBE | {"position": 1.5}}, "between 0 and 1 m"),
         (
