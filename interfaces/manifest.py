@@ -129,6 +129,7 @@ class Manifest:
     patience: float = PATIENCE  # s, how long it may keep others waiting beyond three usual windows
     shows: tuple[Field, ...] = ()  # as of the component
     ranks: bool = False  # whether a component may own several MPI ranks
+    ranks_limits: str = ""  # "module:function" of parameters and ranks: refuses with SceneError
     opencl: str = ""  # "module:Class" of a component that computes on OpenCL devices
     opencl_limits: str = ""  # "module:function" of parameters and device: refuses with SceneError
     opencl_ranks: str = ""  # the same of parameters and ranks, if it can own several on devices
@@ -145,6 +146,11 @@ class Manifest:
         if not (isinstance(cls, type) and issubclass(cls, Component)):
             raise SceneError(f"kind {self.kind}: {path} is not a Component.")
         return cls
+
+    def check_ranks(self, params: Any, ranks: int) -> None:
+        """Refuse checked parameters that the component cannot share out among its ranks."""
+        if ranks > 1 and self.ranks_limits:
+            resolve(self.ranks_limits)(params, ranks)
 
     def check_device(self, params: Any, device: str, ranks: int = 1) -> None:
         """Refuse checked parameters that the component for a device cannot compute on its ranks."""

@@ -75,4 +75,5 @@ MANIFEST = Manifest(
     opencl_limits="quintet.components.dem_bodies.opencl.refusal:refuse_what_needs_the_processor",
     shows=SHOWS,
     ranks=True,
+    ranks_limits="quintet.components.dem_bodies.ranks.refusal:refuse_what_needs_one_rank",
 )

@@ -19,7 +19,6 @@ from quintet.components.dem_bodies.state import Model, State
 from quintet.components.dem_bodies.timetable import Timetable, has_changes
 from quintet.components.shared.contact.one_rank import require_one_rank
 from quintet.interfaces.component import Array, Fields, Keys, Resources
-from quintet.interfaces.errors import SceneError
 
 if TYPE_CHECKING:
     from quintet.components.dem_bodies.partner_faces import PartnerFaces
@@ -54,17 +53,14 @@ def stepping(
     if communicator is None or communicator.size == 1:
         lists = ContactLists(model, balls, skin, params.contact_forces)
         return OneRank(state, lists, resources.threads)
-    if balls is None:
-        raise SceneError(
-            f"ranks must be 1 where no body is a single sphere, as only spheres are shared out; "
-            f"there are {communicator.size}. Take one rank and several threads."
-        )
     # Only bodies on several ranks load mpi4py.
     from quintet.components.dem_bodies.ranks.lists import SharedLists
+    from quintet.components.dem_bodies.ranks.refusal import refuse_what_needs_one_rank
     from quintet.components.dem_bodies.ranks.rows import RowsOfRank
     from quintet.components.dem_bodies.ranks.several import SeveralRanks
     from quintet.components.dem_bodies.ranks.shares import Shares
 
+    refuse_what_needs_one_rank(params, communicator.size)
     shares = Shares(communicator, len(model.kind), int(np.count_nonzero(model.ball)))
     rows = RowsOfRank(model, state, bodies.kind_of_each(np.int32), shares)
     shared_lists = SharedLists(rows, balls, skin, params.contact_forces)

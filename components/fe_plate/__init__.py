@@ -38,4 +38,5 @@ MANIFEST = Manifest(
     bench="quintet.components.fe_plate.bench:cases",
     conform="quintet.components.fe_plate.conform:cases",
     ranks=True,
+    ranks_limits="quintet.components.fe_plate.ranks.refusal:refuse_what_needs_one_rank",
 )

@@ -33,6 +33,7 @@ MANIFEST = Manifest(
     params=ParticleLatticeParams,
     component="quintet.components.particle_dynamics.component:ParticleLattice",
     ranks=True,
+    ranks_limits="quintet.components.particle_dynamics.ranks.refusal:refuse_what_needs_one_rank",
     ports=ports,
     shows=SHOWS,
     plan=plan,

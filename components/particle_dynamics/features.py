@@ -163,12 +163,9 @@ def rows_of(
         return DeviceRows(resources, params, state, model, terms)
     if communicator is None or communicator.size == 1:
         return OneRank(state, model, terms)
-    if model.literal_damping > 0.0:
-        raise SceneError(
-            "damping: the range all needs every pair of points, so the lattice cannot be shared "
-            f"out; found {communicator.size} ranks. Take one rank, or the range cut-off."
-        )
     # Only a lattice of several ranks loads mpi4py.
+    from quintet.components.particle_dynamics.ranks.refusal import refuse_what_needs_one_rank
     from quintet.components.particle_dynamics.ranks.several import SeveralRanks
 
+    refuse_what_needs_one_rank(params, communicator.size)
     return SeveralRanks(communicator, state, model, terms, lattice_cells(lattice))

@@ -109,6 +109,7 @@ MANIFEST = Manifest(
     conform="quintet.components.sph_fluid.conform:cases",
     shows=SHOWS,
     ranks=True,
+    ranks_limits="quintet.components.sph_fluid.ranks.refusal:refuse_what_needs_one_rank",
     opencl="quintet.components.sph_fluid.opencl.device_fluid:DeviceFluid",
     opencl_limits="quintet.components.sph_fluid.opencl.refusal:refuse_what_needs_the_processor",
     opencl_ranks="quintet.components.sph_fluid.ranks.refusal:refuse_what_needs_one_rank",

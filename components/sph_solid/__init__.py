@@ -40,6 +40,7 @@ MANIFEST = Manifest(
     ports=ports,
     shows=SHOWS,
     ranks=True,
+    ranks_limits="quintet.components.sph_solid.ranks.refusal:refuse_what_needs_one_rank",
     plan=plan,
     bench="quintet.components.sph_solid.bench:cases",
     conform="quintet.components.sph_solid.conform:cases",

@@ -167,6 +167,7 @@ def _component(
         if wrong:
             mistakes += wrong
             return None
+        manifest.check_ranks(params, common.ranks)
         manifest.check_device(params, common.device, common.ranks)
         with np.errstate(over="raise", divide="raise", invalid="raise"):
             takes, gives = manifest.ports(params)

@@ -1,5 +1,6 @@
 """What of a solid cannot be shared out yet."""
 
+from quintet.components.shared.contact.one_rank import refuse_faces
 from quintet.components.sph_solid.params import SphSolidParams
 from quintet.interfaces.errors import SceneError
 
@@ -17,7 +18,4 @@ def refuse_what_needs_one_rank(params: SphSolidParams, ranks: int) -> None:
             f"axisymmetric must be false of a solid on {ranks} ranks; it is true. Take one rank."
         )
     if params.contact_with_faces:
-        raise SceneError(
-            f"contact_with_faces must be false of a solid on {ranks} ranks; it is true. Take one "
-            "rank and several threads."
-        )
+        refuse_faces("a solid", ranks)
