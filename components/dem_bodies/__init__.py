@@ -73,6 +73,7 @@ MANIFEST = Manifest(
     conform="quintet.components.dem_bodies.conform:cases",
     opencl="quintet.components.dem_bodies.component:DemBodies",
     opencl_limits="quintet.components.dem_bodies.opencl.refusal:refuse_what_needs_the_processor",
+    opencl_ranks="quintet.components.dem_bodies.opencl.refusal:refuse_what_needs_one_rank",
     shows=SHOWS,
     ranks=True,
     ranks_limits="quintet.components.dem_bodies.ranks.refusal:refuse_what_needs_one_rank",

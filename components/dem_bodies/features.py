@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -22,6 +22,7 @@ from quintet.interfaces.component import Array, Fields, Keys, Resources
 
 if TYPE_CHECKING:
     from quintet.components.dem_bodies.partner_faces import PartnerFaces
+    from quintet.components.dem_bodies.ranks.rows import RowsOfRank
 
 SKIN = 0.4  # over the smallest length of contact: pairs nearer than that are listed
 
@@ -42,29 +43,63 @@ def stepping(
     """
     skin = SKIN * min(map(contact_length, bodies.kinds, solids))
     balls, communicator = no_ball_pairs(model), resources.communicator
+    several = communicator is not None and communicator.size > 1
     if resources.device != "cpu":
         # Only bodies on a device load pyopencl.
-        from quintet.components.dem_bodies.opencl.one_device import DeviceLists, OneDevice
-        from quintet.components.dem_bodies.opencl.refusal import refuse_what_needs_the_processor
+        from quintet.components.dem_bodies.opencl import refusal
 
-        refuse_what_needs_the_processor(params, resources.device)
+        refusal.refuse_what_needs_the_processor(params, resources.device)
+        if several:
+            refusal.refuse_what_needs_one_rank(params, communicator.size)
+            return _several_devices(params, model, state, bodies, skin, resources)
+        from quintet.components.dem_bodies.opencl.device_lists import DeviceLists
+        from quintet.components.dem_bodies.opencl.one_device import OneDevice
+
         device_lists = DeviceLists(model, balls, skin, params.contact_forces)
         return OneDevice(state, device_lists, resources)
-    if communicator is None or communicator.size == 1:
+    if not several:
         lists = ContactLists(model, balls, skin, params.contact_forces)
         return OneRank(state, lists, resources.threads)
     # Only bodies on several ranks load mpi4py.
     from quintet.components.dem_bodies.ranks.lists import SharedLists
     from quintet.components.dem_bodies.ranks.refusal import refuse_what_needs_one_rank
-    from quintet.components.dem_bodies.ranks.rows import RowsOfRank
     from quintet.components.dem_bodies.ranks.several import SeveralRanks
-    from quintet.components.dem_bodies.ranks.shares import Shares
 
     refuse_what_needs_one_rank(params, communicator.size)
-    shares = Shares(communicator, len(model.kind), int(np.count_nonzero(model.ball)))
-    rows = RowsOfRank(model, state, bodies.kind_of_each(np.int32), shares)
+    assert balls is not None
+    rows = _rows_of_rank(model, state, bodies, communicator)
     shared_lists = SharedLists(rows, balls, skin, params.contact_forces)
     return SeveralRanks(rows, shared_lists, resources.threads)
+
+
+def _several_devices(
+    params: DemBodiesParams,
+    model: Model,
+    state: State,
+    bodies: Bodies,
+    skin: float,
+    resources: Resources,
+) -> OneRank:
+    """What steps the rows of this rank on its device."""
+    # Only bodies on several ranks load mpi4py.
+    from quintet.components.dem_bodies.opencl.several_devices import SeveralDevices
+    from quintet.components.dem_bodies.opencl.shared_lists import SharedDeviceLists
+
+    balls = no_ball_pairs(model)
+    assert balls is not None
+    rows = _rows_of_rank(model, state, bodies, resources.communicator)
+    lists = SharedDeviceLists(rows, balls, skin, params.contact_forces)
+    return SeveralDevices(rows, lists, resources)
+
+
+def _rows_of_rank(model: Model, state: State, bodies: Bodies, communicator: Any) -> "RowsOfRank":
+    """Rows of this rank of several."""
+    # Only bodies on several ranks load mpi4py.
+    from quintet.components.dem_bodies.ranks.rows import RowsOfRank
+    from quintet.components.dem_bodies.ranks.shares import Shares
+
+    shares = Shares(communicator, len(model.kind), int(np.count_nonzero(model.ball)))
+    return RowsOfRank(model, state, bodies.kind_of_each(np.int32), shares)
 
 
 def timetable(params: DemBodiesParams, bodies: Bodies, model: Model) -> Timetable | None:

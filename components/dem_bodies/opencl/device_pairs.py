@@ -1,7 +1,7 @@
 """Listed pairs of balls in the memory of a device, with the history of their contacts."""
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,13 +9,18 @@ from numpy.typing import NDArray
 from quintet.components.dem_bodies.contact.ball_pairs import ball_pairs
 from quintet.components.dem_bodies.kernels.rolling_resistance import rolling_constants
 from quintet.components.dem_bodies.opencl.programs import WIDTH
-from quintet.components.dem_bodies.state import BallPairs, Model, Numbers
+from quintet.components.dem_bodies.state import BallPairs, Model, Numbers, Short, Whole
 from quintet.components.shared.opencl.arrays import DeviceArray
+
+MOST_LANES = 4  # pairs that are computed at once
 
 
 @dataclass(frozen=True, slots=True)
 class DevicePairs:
-    """`BallPairs` in device memory, and for each row the pairs in which it is the partner."""
+    """`BallPairs` in device memory, and for each row the pairs in which it is the partner.
+
+    Loads have room for those of other ranks' pairs, behind own ones.
+    """
 
     count: int
     stride: int  # pairs that arrays have room for
@@ -27,9 +32,9 @@ class DevicePairs:
     incoming_begin: DeviceArray  # (b + 1,)
     incoming: DeviceArray  # pairs with a later ball, by its row
     history: DeviceArray  # (4, stride)
-    push: DeviceArray  # (2 stride, 4) force [N] and depth [m]; force × normal [N]
+    push: DeviceArray  # (room, 8) force [N] and depth [m]; force × normal [N], energy [J]
     spring: DeviceArray | None  # (stride, 4) N m, elastic moment; None if no pair resists rolling
-    moment: DeviceArray | None  # (stride, 4) N m, all of it
+    moment: DeviceArray | None  # (room, 4) N m, all of it, and energy [J]
 
     def on_host(self, model: Model, records_forces: bool) -> BallPairs:
         """Pairs of the host without history; its rows have the order of the device's."""
@@ -42,32 +47,62 @@ class DevicePairs:
         if balls.rolling_moment is not None and self.spring is not None:
             balls.rolling_moment[:] = self.spring.get()[: self.count, :3]
         if len(balls.force):
-            balls.force[:] = self.push.get()[: 2 * self.count : 2, :3]
+            balls.force[:] = self.push.get()[: self.count, :3]
 
 
-def pairs_of_host(queue: Any, model: Model, balls: BallPairs, lanes: int) -> DevicePairs:
-    """Copy the host's pairs with their history; `lanes` pairs per work item."""
-    count, rows = len(balls.partner), len(balls.begin) - 1
-    stride = -(-count // lanes) * lanes
+class NumberedPairs(NamedTuple):
+    """Pairs by the numbers of a device's rows: own balls, copies, the ground, then planes."""
+
+    begin: Whole  # (b + 1,)
+    row: Whole | Short  # (pairs,)
+    partner: Whole | Short  # (pairs,)
+    incoming_begin: Whole  # (b + 1,)
+    incoming: Whole  # pairs; from `stride_of` their number on, those of other ranks
+    arrived: int  # how many pairs of other ranks
+
+
+def all_pairs(balls: BallPairs) -> NumberedPairs:
+    """Pairs of all balls on one device, which has the host's numbers."""
+    rows = len(balls.begin) - 1
     pairs_of_balls = np.flatnonzero(balls.partner < rows)
     partner_rows = balls.partner[pairs_of_balls]
     ends = np.cumsum(np.bincount(partner_rows, minlength=rows))
+    return NumberedPairs(
+        balls.begin,
+        balls.row,
+        balls.partner,
+        np.concatenate([[0], ends]),
+        pairs_of_balls[np.argsort(partner_rows, kind="stable")],
+        0,
+    )
+
+
+def stride_of(count: int) -> int:
+    """Room for so many pairs: a multiple of the pairs that are computed at once."""
+    return -(-count // MOST_LANES) * MOST_LANES
+
+
+def pairs_of_host(queue: Any, model: Model, balls: BallPairs, pairs: NumberedPairs) -> DevicePairs:
+    """Copy the host's pairs with their history, by the device's numbers."""
+    count = len(balls.partner)
+    stride = stride_of(count)
+    room = stride + pairs.arrived
     spring = moment = None
     if balls.rolling_moment is not None:
         spring = DeviceArray.of(queue, _with_room(balls.rolling_moment, stride, 4))
-        moment = DeviceArray(queue, (stride, 4))
+        moment = DeviceArray(queue, (room, 4))
     return DevicePairs(
         count=count,
         stride=stride,
-        begin=_whole(queue, balls.begin),
-        row=_whole(queue, balls.row),
-        partner=_whole(queue, balls.partner),
+        begin=_whole(queue, pairs.begin),
+        row=_whole(queue, pairs.row),
+        partner=_whole(queue, pairs.partner),
         constants_row=_whole(queue, balls.constants_row),
         constants=DeviceArray.of(queue, constants_of(model, balls)),
-        incoming_begin=_whole(queue, np.concatenate([[0], ends])),
-        incoming=_whole(queue, pairs_of_balls[np.argsort(partner_rows, kind="stable")]),
+        incoming_begin=_whole(queue, pairs.incoming_begin),
+        incoming=_whole(queue, pairs.incoming),
         history=DeviceArray.of(queue, _with_room(balls.history.T, stride, 4).T),
-        push=DeviceArray(queue, (2 * stride, 4)),
+        push=DeviceArray(queue, (room, 8)),
         spring=spring,
         moment=moment,
     )

@@ -5,15 +5,20 @@ from typing import Any
 
 import numpy as np
 
-from quintet.components.dem_bodies.state import Model, Numbers, State, sort_rows
+from quintet.components.dem_bodies.state import COLUMNS, Model, Numbers, State, Whole, sort_rows
 from quintet.components.shared.opencl.arrays import DeviceArray, run
+from quintet.components.shared.opencl.devices import opencl
 
 # Arrays of `State` that a device changes; the ground, behind all balls, has them on the host.
 READ = ("motion", "orientation", "contact_load", "previous_contact_load")
+WIDTHS = dict(zip((*READ, "load"), (COLUMNS, 4, 6, 6, 6), strict=True))
+NO_ROWS: Whole = np.zeros(0, np.int64)
 
 
 class DeviceRows:
-    """Rows of balls, in the order of the host's.
+    """Rows of balls, in the order of the host's: those of a rank, and copies of other ranks' rows.
+
+    Behind them is the ground.
 
     Parameters
     ----------
@@ -22,35 +27,49 @@ class DeviceRows:
         Of `programs.source`.
     model, state
         Of the host; all bodies are balls.
+    owned : slice
+        The host's rows of this rank.
+    copied : (k,) int array
+        The host's rows of other ranks of which there are copies.
     """
 
-    def __init__(self, queue: Any, kernels: Any, model: Model, state: State) -> None:
+    def __init__(
+        self, queue: Any, kernels: Any, model: Model, state: State, owned: slice,
+        copied: Whole = NO_ROWS,
+    ) -> None:  # fmt: skip
         self.queue, self._model, self._state = queue, model, state
-        self.count = int(np.count_nonzero(model.ball))
-        self._pack = kernels.pack
+        self._owned, self._copied = owned, copied
+        self.count, self.copies = owned.stop - owned.start, len(copied)
+        self._pack = opencl().Kernel(kernels, "pack_motion")
         self.arrays = {
-            name: DeviceArray(queue, getattr(state, name).shape) for name in (*READ, "load")
+            name: DeviceArray(queue, (self.count + self.copies + 1, WIDTHS[name]))
+            for name in (*READ, "load")
         }
-        self.listed = DeviceArray(queue, state.listed_centre.shape)
+        self.listed = DeviceArray(queue, (self.count, 3))
         self.inverse = DeviceArray(queue, (self.count, 2))
         self.body, self.material = (DeviceArray(queue, (self.count,), np.int64) for _ in range(2))
         self._spare: dict[int, DeviceArray] = {}  # buffers for sorting, by their number of words
         self.is_sorted_apart = False  # whether the host's rows have another order
-        self._packed = DeviceArray(queue, (13 * self.count,))
+        self._packed: DeviceArray | None = None
         self.plane, self._planes = DeviceArray(queue, model.plane.shape), np.zeros((0, 4))
         self.put_planes()
 
     def put(self) -> None:
         """Copy the host's rows to the device."""
-        model, state = self._model, self._state
+        model, state, owned = self._model, self._state, self._owned
         for name, array in self.arrays.items():
-            array.put(getattr(state, name))
-        self.listed.put(state.listed_centre)
-        inverses = np.column_stack([model.inverse_mass, model.inverse_moment])
-        self.inverse.put(inverses[: self.count])
-        self.body.put(state.body[: self.count])
-        self.material.put(model.material[: self.count])
+            array.put(self._rows_of(name))
+        self.listed.put(state.listed_centre[owned])
+        inverses = model.inverse_mass[owned], model.inverse_moment[owned]
+        self.inverse.put(np.column_stack(inverses))
+        self.body.put(state.body[owned])
+        self.material.put(model.material[owned])
         self.is_sorted_apart = False
+
+    def _rows_of(self, name: str) -> Numbers:
+        """Rows of an array of the host's state: own ones, copies and the ground."""
+        array: Numbers = getattr(self._state, name)
+        return np.concatenate([array[self._owned], array[self._copied], array[-1:]])
 
     def put_planes(self) -> None:
         """Copy the planes to the device if any has vanished or come back."""
@@ -61,7 +80,7 @@ class DeviceRows:
 
     def put_loads(self) -> None:
         """Copy the loads on all balls to the device."""
-        self.arrays["load"].put(self._state.load)
+        self.arrays["load"].put(self._rows_of("load"))
 
     def sorted_arrays(self) -> list[DeviceArray]:
         """Arrays that have a row for each ball."""
@@ -86,17 +105,19 @@ class DeviceRows:
         """Copy the rows of balls into the host's state."""
         self.sort_host()
         for name in READ:
-            getattr(self._state, name)[: self.count] = self.arrays[name].get()[: self.count]
+            getattr(self._state, name)[self._owned] = self.arrays[name].get()[: self.count]
 
     def keep_loads(self) -> None:
         """Keep the loads of contacts as those of the last step's beginning."""
         state, arrays = self._state, self.arrays
-        state.previous_contact_load[self.count :] = state.contact_load[self.count :]
+        state.previous_contact_load[-1:] = state.contact_load[-1:]
         arrays["previous_contact_load"].copy_from(arrays["contact_load"])
 
     def motion(self) -> Sequence[Numbers]:
         """Position, velocity, orientation and angular velocity, in the order of the bodies."""
         arrays, count = self.arrays, self.count
+        if self._packed is None:
+            self._packed = DeviceArray(self.queue, (13 * count,))
         run(
             self.queue, self._pack, count, np.int32(count), self.body, arrays["motion"],
             arrays["orientation"], self._packed,

@@ -2,7 +2,7 @@
 
    A pair has WIDTH vectors of constants, by its row of them: those of laws.py:pair_constants, then
    the arm and the inverse inertia of its resistance against rolling. Its history stands number by
-   number, STRIDE numbers apart. */
+   number, STRIDE numbers apart. Pairs reduce extremes alone: rows add up what pairs store. */
 
 #if LANES == 4
 #define EACH(a, part) ((reals)((a##0).part, (a##1).part, (a##2).part, (a##3).part))
@@ -11,8 +11,6 @@
 #define FOR_LANES(act) act(0, x) act(1, y) act(2, z) act(3, w)
 #define PART(a, lane) a.lane
 #define IS_ANY(truths) any(truths)
-#define IN_COUNT ((mask)(first, first + 1, first + 2, first + 3) < (mask)count)
-#define TOTAL_OF(a) ((a.x + a.y) + (a.z + a.w))
 #define GREATEST_OF(a) max_real(max_real(a.x, a.y), max_real(a.z, a.w))
 #elif LANES == 1
 #define EACH(a, part) (a##0).part
@@ -21,8 +19,6 @@
 #define FOR_LANES(act) act(0, x)
 #define PART(a, lane) a
 #define IS_ANY(truths) (truths)
-#define IN_COUNT 1
-#define TOTAL_OF(a) a
 #define GREATEST_OF(a) a
 #else
 #error "LANES must be 1 or 4"
@@ -41,8 +37,8 @@ static double4 apart(double4 at, double4 other, int number, __global const doubl
     return (double4)(d.f0, d.f1, d.f2, 0);
 }
 
-/* Motion of both rows of a lane's pair, and its constants. Lanes past the end repeat the last pair;
-   IN_COUNT masks their energy. */
+/* Motion of both rows of a lane's pair, and its constants. Lanes past the end repeat the last
+   pair. */
 #define READ_PAIR(lane, part) \
     const int k##lane = min(first + lane, count - 1), b##lane = partner[k##lane]; \
     const int p##lane = 4 * row[k##lane], q##lane = 4 * min(b##lane, rows - 1); \
@@ -60,13 +56,13 @@ static double4 apart(double4 at, double4 other, int number, __global const doubl
         PART(contact.f1, part)); \
     push[2 * (first + lane) + 1] = (double4)( \
         PART(force_cross_normal.f0, part), PART(force_cross_normal.f1, part), \
-        PART(force_cross_normal.f2, part), 0);
+        PART(force_cross_normal.f2, part), PART(acting.f2, part));
 
 #define WEIGH(lane, part) \
     PART(weight, part) = damping_weight( \
         PART(before, part), PART(contact.f1, part), PART(closing, part), dt);
 
-/* Force and torques of each pair, and its history. */
+/* Force and torques of each pair, its energy, and its history. */
 __kernel void touch(
     double dt, int count, int stride, int rows, __global const int *row,
     __global const int *partner, __global const int *constants_row,
@@ -76,7 +72,7 @@ __kernel void touch(
 {
     ROOM(PAIR_COLUMNS);
     const int first = LANES * get_global_id(0);
-    double energy = 0, overlap = -FAR, relative = 0, stiffness = 0;
+    double overlap = -FAR, relative = 0, stiffness = 0;
     if (first < count) {
         FOR_LANES(READ_PAIR)
         const reals radius = EACH(ia, w), radii = radius + EACH(ja, w), other = radii - radius;
@@ -106,15 +102,12 @@ __kernel void touch(
         const reals inverse = is_touching ? roots.f2 : (reals)0;
         WRITE(inverse, history, 3);
         FOR_LANES(WRITE_PUSH)
-        const reals of_springs = IN_COUNT ? acting.f2 : (reals)0;
         const reals part_of_radius = relative_depth(contact.f1, radius, other);
         const reals stiff = c.f5 * contact.f2;
-        energy = TOTAL_OF(of_springs);
         overlap = GREATEST_OF(contact.f1);
         relative = max_real(0, GREATEST_OF(part_of_radius));
         stiffness = max_real(0, GREATEST_OF(stiff));
     }
-    STORE(ENERGY, energy);
     STORE(OVERLAP, overlap);
     STORE(RELATIVE, relative);
     STORE(STIFFNESS, stiffness);

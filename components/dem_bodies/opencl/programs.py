@@ -34,15 +34,15 @@ WIDTH = 3  # vectors of four numbers of a pair's constants
 # Works [J]; square of the way since pairs were listed [m²], and whether an orientation is not
 # finite.
 DRIFT_SUMS, DRIFT = 2, ("WORK", "LOAD_WORK", "TRAVEL", "BROKEN")
-# Elastic energy [J]; overlap [m], that over the smaller radius, and S_n/m* [(rad/s)²].
-PAIR_SUMS, PAIRS = 1, ("ENERGY", "OVERLAP", "RELATIVE", "STIFFNESS")
-ROLL_COLUMNS = 1  # elastic energy [J]
-# Works, and the load on the ground; what moves fast, as in `state.py`; contacts of a row.
+# Overlap [m], that over the smaller radius, and S_n/m* [(rad/s)²].
+PAIR_SUMS, PAIRS = 0, ("OVERLAP", "RELATIVE", "STIFFNESS")
+# Works, the load on the ground, and elastic energy [J] of the pairs of rows; what moves fast, as
+# in `state.py`; contacts of a row.
 GROUND = 2
-KICK_SUMS = 8
+KICK_SUMS = 9
 KICK = (
-    "WORK", "LOAD_WORK", *("",) * 6, "VELOCITY2", "ROTATION2", "CENTRIPETAL", "ACCELERATION2",
-    "SPIN_UP2", "CONTACTS",
+    "WORK", "LOAD_WORK", *("",) * 6, "ENERGY", "VELOCITY2", "ROTATION2", "CENTRIPETAL",
+    "ACCELERATION2", "SPIN_UP2", "CONTACTS",
 )  # fmt: skip
 
 
@@ -55,8 +55,8 @@ def source(rolls: bool, lanes: int) -> str:
     numbers = {
         "GROUP": GROUP, "LANES": lanes, "WIDTH": WIDTH, "LEAST": repr(LEAST), "FAR": repr(FAR),
         "DRIFT_SUMS": DRIFT_SUMS, "DRIFT_COLUMNS": len(DRIFT), "PAIR_SUMS": PAIR_SUMS,
-        "PAIR_COLUMNS": len(PAIRS), "ROLL_COLUMNS": ROLL_COLUMNS, "KICK_SUMS": KICK_SUMS,
-        "KICK_COLUMNS": len(KICK), "GROUND": GROUND,
+        "PAIR_COLUMNS": len(PAIRS), "KICK_SUMS": KICK_SUMS, "KICK_COLUMNS": len(KICK),
+        "GROUND": GROUND,
         "LAYER": f"{LAYER}L", "ROW_OF_CELLS": f"{ROW}L",
     }  # fmt: skip
     for columns in (DRIFT, PAIRS, KICK):

@@ -4,6 +4,7 @@ from quintet.components.dem_bodies.params import DemBodiesParams, Material, Pair
 from quintet.components.dem_bodies.shapes.rigid_body import Plane, RigidBody
 from quintet.components.dem_bodies.shapes.solid import is_ball
 from quintet.components.shared.opencl.limits import Limit, refuse_wrong
+from quintet.interfaces.errors import SceneError
 
 # Every key of the bodies stands here, in `SUPPORTED`, or in the table of `limits`: a test fails
 # if a new key is in neither, or if one of the nested tables is not in `SUPPORTED_IN`.
@@ -29,6 +30,21 @@ SUPPORTED_IN = {
 def refuse_what_needs_the_processor(params: DemBodiesParams, device: str) -> None:
     """Refuse parameters that a device does not compute; see `refuse_wrong`."""
     refuse_wrong(limits(params), device)
+
+
+def refuse_what_needs_one_rank(params: DemBodiesParams, ranks: int) -> None:
+    """Refuse spheres that cannot be shared out among ranks with devices.
+
+    Raises
+    ------
+    SceneError
+        If there is only one.
+    """
+    if len(params.placed) == 1:
+        raise SceneError(
+            f"bodies must be two spheres or more on devices of {ranks} ranks; found 1. Set "
+            "ranks = 1."
+        )
 
 
 def limits(params: DemBodiesParams) -> dict[str, Limit]:

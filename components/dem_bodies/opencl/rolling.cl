@@ -1,16 +1,14 @@
 /* Resistance against rolling of pairs that touch: kernels/rolling_resistance.py. */
 
-/* Moment of each pair on its first ball, and the elastic part of it. */
+/* Moment of each pair on its first ball with its energy, and the elastic part of it. */
 __kernel void roll(
     double dt, int count, int stride, int rows, __global const int *row,
     __global const int *partner, __global const int *constants_row,
     __global const double4 *constants, __global const double4 *plane,
     __global const double4 *motion, __global const double *history, __global const double4 *push,
-    __global double4 *spring, __global double4 *moment, __global double *part)
+    __global double4 *spring, __global double4 *moment)
 {
-    ROOM(ROLL_COLUMNS);
     const int k = get_global_id(0);
-    double energy = 0;
     if (k < count) {
         const double inverse_root = history[3 * (size_t)stride + k];
         const int m = WIDTH * constants_row[k];
@@ -32,12 +30,8 @@ __kernel void roll(
             const Resisting r = resistance(
                 elastic, normal, constants[m].x, inverse_root, arm, constants[m + 2].x, force, mean,
                 end, dt);
-            moment[k] = (double4)(r.f0.f0, r.f0.f1, r.f0.f2, 0);
+            moment[k] = (double4)(r.f0.f0, r.f0.f1, r.f0.f2, r.f2);
             spring[k] = (double4)(r.f1.f0, r.f1.f1, r.f1.f2, 0);
-            energy = r.f2;
         }
     }
-    STORE(0, energy);
-    barrier(CLK_LOCAL_MEM_FENCE);
-    tally(room, ROLL_COLUMNS, ROLL_COLUMNS, part);
 }

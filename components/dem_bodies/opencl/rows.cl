@@ -54,7 +54,8 @@ __kernel void drift(
 
 /* Add up the loads of all pairs of a row: those that it lists, then those that list it, in the
    order of the pairs. Half kick with these loads. A pair has its force and depth in `push`, and
-   behind them force times normal, which gives the torques with the arms of both balls. */
+   behind them force times normal, which gives the torques with the arms of both balls, and its
+   energy; its moment against rolling, and the energy of that, are in `moment`. */
 __kernel void kick(
     double dt, int loaded, int balls, int rows, double4 gravity, __global const double2 *inverse,
     __global const double *load, __global const int *begin, __global const int *partner,
@@ -72,9 +73,12 @@ __kernel void kick(
         for (int k = begin[i]; k < begin[i + 1]; k++) {
             const double4 f = push[2 * k];
             if (f.w <= 0) continue;
-            double3 by_pair = (at.w - 0.5 * f.w) * push[2 * k + 1].xyz;
+            const double4 turn = push[2 * k + 1];
+            double3 by_pair = (at.w - 0.5 * f.w) * turn.xyz;
+            sums[ENERGY] += turn.w;
 #ifdef ROLLS
             by_pair += moment[k].xyz;
+            sums[ENERGY] += moment[k].w;
 #endif
             force += f.xyz;
             torque += by_pair;
@@ -136,7 +140,7 @@ __kernel void kick(
 
 /* Motion as ports have it, in the order of the bodies: positions, velocities, orientations and
    angular velocities one after another. */
-__kernel void pack(
+__kernel void pack_motion(
     int balls, __global const long *body, __global const double4 *motion,
     __global const double4 *orientation, __global double *packed)
 {

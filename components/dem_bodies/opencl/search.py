@@ -104,7 +104,7 @@ class Search:
             incoming_begin=incoming_begin,
             incoming=DeviceArray(queue, (listed,), np.int32),
             history=DeviceArray(queue, (4, count)),
-            push=DeviceArray(queue, (2 * count, 4)),
+            push=DeviceArray(queue, (count, 8)),
             spring=spring,
             moment=moment,
         )

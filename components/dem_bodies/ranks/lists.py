@@ -1,6 +1,5 @@
 """Listed pairs of the rows that a rank owns, and loads that pairs have on rows of other ranks."""
 
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -16,6 +15,7 @@ from quintet.components.dem_bodies.contact.body_search import (
 from quintet.components.dem_bodies.contact.lists import ContactLists, history_of
 from quintet.components.dem_bodies.kernels.ball_lists import Sorted
 from quintet.components.dem_bodies.kernels.contact_counts import count_ball_contacts
+from quintet.components.dem_bodies.ranks.loads import link_loads
 from quintet.components.dem_bodies.ranks.rows import RowsOfRank
 from quintet.components.dem_bodies.state import (
     BLOCK,
@@ -172,29 +172,19 @@ class SharedLists(ContactLists):
         shares, pairs = self.shares, self.balls
         partner, row = pairs.partner.astype(np.int64), pairs.row.astype(np.int64)
         leaves = ((row // BLOCK + 1) * BLOCK <= partner) & (partner < shares.rows)
-        target = partner[leaves]  # row of each outgoing load
-        owner = shares.owners(target)
-        sent = [np.flatnonzero(owner == rank) for rank in range(shares.size)]
-        sent[shares.rank] = np.zeros(0, np.int64)
-        arrived = send_rows(shares.communicator, [target[slots] for slots in sent])
-        ends = len(target) + np.cumsum([0, *map(len, arrived)])
-        slots = [np.arange(a, b) for a, b in pairwise(ends)]
-        here = np.flatnonzero(owner == shares.rank)
-        # Blocks of earlier ranks are earlier blocks: their loads come first.
-        all_targets = np.concatenate([*arrived, target[here]])
-        all_slots = np.concatenate([*slots, here])
-        order = np.argsort(all_targets, kind="stable")
-        counts = np.bincount(all_targets - rows.start, minlength=rows.stop - rows.start)
-        self.incoming_begin[rows.start : rows.stop + 1] = np.concatenate([[0], np.cumsum(counts)])
+        count = np.count_nonzero(leaves)
+        loads = link_loads(shares, rows, partner[leaves], np.arange(count), count)
+        self.incoming_begin[rows.start : rows.stop + 1] = loads.incoming_begin
+        arrived_rows = np.concatenate(loads.arrived_rows)
         earliest = pairs.earliest.copy()
-        earliest[np.unique(np.concatenate(arrived)) // BLOCK] = -1  # not before all have come
+        earliest[np.unique(arrived_rows) // BLOCK] = -1  # not before all have come
         self.balls = pairs._replace(
-            outgoing=np.zeros((int(ends[-1]), 6)),
-            incoming=all_slots[order].astype(np.uint32),
+            outgoing=np.zeros((count + len(arrived_rows), 6)),
+            incoming=loads.incoming.astype(np.uint32),
             incoming_begin=self.incoming_begin,
             earliest=earliest,
         )
-        self.load_halo = Halo(shares.communicator, sent, slots, (6,))
+        self.load_halo = Halo(shares.communicator, loads.sent, loads.arrived, (6,))
 
     def count_contacts(self, listed: bool = False) -> int:
         """Most contacts of any row; with `listed` as if all listed pairs touched."""

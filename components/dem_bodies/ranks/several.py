@@ -112,6 +112,13 @@ class SeveralRanks(OneRank):
 
     def _renew(self, state: State) -> bool:
         """List pairs again; return False if a position is not finite."""
+        if not self._list_pairs(state):
+            return False
+        self.sums[:, TRAVEL] = 0.0
+        return True
+
+    def _list_pairs(self, state: State) -> bool:
+        """List pairs of the rows on the host; return False if a position is not finite."""
         shares, owned = self.shares, state.position[self.rows.owned]
         finite = np.array([float(np.isfinite(owned).all())])
         if least(shares.communicator, finite)[0] == 0.0:
@@ -119,7 +126,6 @@ class SeveralRanks(OneRank):
         # Blocks may get another owner, who goes on with the works of the drift.
         shares.blocks_everywhere(self.sums)
         self.lists.renew(state)
-        self.sums[:, TRAVEL] = 0.0
         return True
 
     def _exchange_motion(self, state: State) -> bool:

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from quintet.components.shared.domain.halo import Halo
 from quintet.components.shared.opencl.arrays import DeviceArray, run
+from quintet.components.shared.opencl.devices import opencl
 from quintet.interfaces.component import Array
 
 SOURCE = Path(__file__).with_name("halo.cl")
@@ -47,7 +48,7 @@ class DeviceHalo:
 
     def __init__(self, communicator: Any, queue: Any, kernels: Any) -> None:
         self._communicator, self.queue = communicator, queue
-        self._pack, self._unpack = kernels.pack, kernels.unpack
+        self._pack, self._unpack = (opencl().Kernel(kernels, name) for name in ("pack", "unpack"))
         self.count = 0  # copies
         self._sent_count = 0
         self._messages: dict[int, Messages] = {}  # by the words of a row

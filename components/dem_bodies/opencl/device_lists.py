@@ -1,0 +1,68 @@
+"""Pair lists of the host, with pairs and history in the memory of a device."""
+
+from quintet.components.dem_bodies.contact.lists import ContactLists
+from quintet.components.dem_bodies.opencl.device_pairs import DevicePairs
+from quintet.components.dem_bodies.opencl.device_rows import DeviceRows
+
+
+class DeviceLists(ContactLists):
+    """Pair lists on the host; history, and after a device search newer lists, are on the device."""
+
+    pairs: DevicePairs  # of the device
+    are_of_device = False  # whether the device has listed pairs since the host read them
+    touching = 0  # most contacts of a row, as the device counts them
+
+    def count_contacts(self, listed: bool = False) -> int:
+        """Most contacts of any row; with `listed` as if all listed pairs touched."""
+        return super().count_contacts(listed) if listed else self.touching
+
+    def note_contacts(self) -> None:
+        """Count the contacts of pairs whose history is on the host."""
+        self.touching = super().count_contacts()
+
+    def take(self, pairs: DevicePairs) -> None:
+        """Take pairs that were copied to the device."""
+        self.pairs, self.are_of_device = pairs, False
+
+    def follow(self, pairs: DevicePairs, most_contacts: int) -> None:
+        """Follow pairs that the device has listed, and the most that a row has."""
+        self.pairs, self.are_of_device, self.most_contacts = pairs, True, most_contacts
+
+    def read(self) -> None:
+        """Copy pairs with their history and forces to the host; rows have been copied."""
+        if self.are_of_device:
+            self.balls = self.pairs.on_host(self.model, self.records_forces)
+            self.are_of_device = False
+        if self.balls is not None:
+            self.pairs.get(self.balls)
+
+
+class HostCopy:
+    """What of a device's rows and lists the host has; rows and pairs are copied when needed.
+
+    Parameters
+    ----------
+    rows : DeviceRows
+    lists : DeviceLists
+    """
+
+    def __init__(self, rows: DeviceRows, lists: DeviceLists) -> None:
+        self._rows, self._lists = rows, lists
+        self._has_rows = self._has_pairs = True
+
+    def outdate(self) -> None:
+        """Note that the device has newer rows and pairs."""
+        self._has_rows = self._has_pairs = False
+
+    def read_rows(self) -> None:
+        """Copy rows to the host, unless they are there."""
+        if not self._has_rows:
+            self._rows.get()
+            self._has_rows = True
+
+    def read(self) -> None:
+        """Copy rows and pairs to the host, unless they are there."""
+        self.read_rows()
+        if not self._has_pairs:
+            self._lists.read()
+            self._has_pairs = True
