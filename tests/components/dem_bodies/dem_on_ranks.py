@@ -78,13 +78,20 @@ SCENES = {
 class Run(SolverRun):
     """A scene under a changing load; each rank receives the loads of all bodies."""
 
+    scenes = SCENES
+    resources = Resources(communicator=COMMUNICATOR)
+
     def build(self):
-        params, _ = read(DemBodiesParams, SCENES[self.name](), self.name)
-        bodies = DemBodies(params, Resources(communicator=COMMUNICATOR))
+        params, _ = read(DemBodiesParams, self.scenes[self.name](), self.name)
+        bodies = DemBodies(params, self.resources)
         bodies.bind({}, frozenset(port.name for port in bodies.takes + bodies.gives))
         if self.name == "begun":
-            bodies.begin_from(state_elsewhere())
+            bodies.begin_from(self.state_elsewhere())
         return bodies
+
+    def state_elsewhere(self):
+        """State from which a scene begins."""
+        return state_elsewhere()
 
     def inputs(self):
         number = np.arange(self.solver.items())

@@ -22,14 +22,18 @@ def differences(folder, first, second):
     ]
 
 
-def from_the_start(program, names, steps, ranks=(1, 2)):
-    """Return a fixture: a folder with runs of all cases on each number of ranks."""
+def from_the_start(program, names, steps, ranks=(1, 2), moved=()):
+    """Return a fixture: a folder with runs of all cases on each number of ranks.
+
+    On those in `moved` the borders between ranks are moved.
+    """
 
     @pytest.fixture(scope="module")
     def folder(tmp_path_factory, on_ranks):
         folder, cases = tmp_path_factory.mktemp("ranks"), ",".join(names)
         for number in ranks:
-            on_ranks(RANK_PROGRAM, number, program, folder, steps, 0, cases, seconds=300)
+            words = [program, folder, steps, 0, cases, *[MOVED] * (number in moved)]
+            on_ranks(RANK_PROGRAM, number, *words, seconds=300)
         return folder
 
     return folder
