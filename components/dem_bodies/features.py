@@ -43,21 +43,9 @@ def stepping(
     """
     skin = SKIN * min(map(contact_length, bodies.kinds, solids))
     balls, communicator = no_ball_pairs(model), resources.communicator
-    several = communicator is not None and communicator.size > 1
     if resources.device != "cpu":
-        # Only bodies on a device load pyopencl.
-        from quintet.components.dem_bodies.opencl import refusal
-
-        refusal.refuse_what_needs_the_processor(params, resources.device)
-        if several:
-            refusal.refuse_what_needs_one_rank(params, communicator.size)
-            return _several_devices(params, model, state, bodies, skin, resources)
-        from quintet.components.dem_bodies.opencl.device_lists import DeviceLists
-        from quintet.components.dem_bodies.opencl.one_device import OneDevice
-
-        device_lists = DeviceLists(model, balls, skin, params.contact_forces)
-        return OneDevice(state, device_lists, resources)
-    if not several:
+        return _on_devices(params, model, state, bodies, skin, resources)
+    if communicator is None or communicator.size == 1:
         lists = ContactLists(model, balls, skin, params.contact_forces)
         return OneRank(state, lists, resources.threads)
     # Only bodies on several ranks load mpi4py.
@@ -72,7 +60,7 @@ def stepping(
     return SeveralRanks(rows, shared_lists, resources.threads)
 
 
-def _several_devices(
+def _on_devices(
     params: DemBodiesParams,
     model: Model,
     state: State,
@@ -80,16 +68,29 @@ def _several_devices(
     skin: float,
     resources: Resources,
 ) -> OneRank:
-    """What steps the rows of this rank on its device."""
+    """What steps the rows on a device, or those of this rank on its device."""
+    # Only bodies on a device load pyopencl.
+    from quintet.components.dem_bodies.opencl.device_lists import DeviceLists
+    from quintet.components.dem_bodies.opencl.one_device import OneDevice
+    from quintet.components.dem_bodies.opencl.refusal import (
+        refuse_what_needs_one_rank,
+        refuse_what_needs_the_processor,
+    )
+
+    refuse_what_needs_the_processor(params, resources.device)
+    balls, communicator = no_ball_pairs(model), resources.communicator
+    assert balls is not None
+    if communicator is None or communicator.size == 1:
+        lists = DeviceLists(model, balls, skin, params.contact_forces)
+        return OneDevice(state, lists, resources)
+    refuse_what_needs_one_rank(params, communicator.size)
     # Only bodies on several ranks load mpi4py.
     from quintet.components.dem_bodies.opencl.several_devices import SeveralDevices
     from quintet.components.dem_bodies.opencl.shared_lists import SharedDeviceLists
 
-    balls = no_ball_pairs(model)
-    assert balls is not None
-    rows = _rows_of_rank(model, state, bodies, resources.communicator)
-    lists = SharedDeviceLists(rows, balls, skin, params.contact_forces)
-    return SeveralDevices(rows, lists, resources)
+    rows = _rows_of_rank(model, state, bodies, communicator)
+    shared_lists = SharedDeviceLists(rows, balls, skin, params.contact_forces)
+    return SeveralDevices(rows, shared_lists, resources)
 
 
 def _rows_of_rank(model: Model, state: State, bodies: Bodies, communicator: Any) -> "RowsOfRank":
