@@ -43,5 +43,6 @@ MANIFEST = Manifest(
     opencl_limits=(
         "quintet.components.particle_dynamics.opencl.refusal:refuse_what_needs_the_processor"
     ),
+    opencl_ranks="quintet.components.particle_dynamics.opencl.refusal:refuse_what_needs_one_rank",
 )
 SUCCESSORS = ("particle_lattice", "particle_spheres")  # of the kind particle_dynamics

@@ -157,15 +157,46 @@ def rows_of(
         averaged_from=params.averages.begin,
     )
     if resources.device != "cpu":
-        # Only a lattice on a device loads pyopencl.
-        from quintet.components.particle_dynamics.opencl.device_rows import DeviceRows
-
-        return DeviceRows(resources, params, state, model, terms)
+        refuse_on_device(params, resources)
     if communicator is None or communicator.size == 1:
-        return OneRank(state, model, terms)
+        alone = OneRank(state, model, terms)
+        return alone if resources.device == "cpu" else _on_device(resources, alone)
     # Only a lattice of several ranks loads mpi4py.
     from quintet.components.particle_dynamics.ranks.refusal import refuse_what_needs_one_rank
     from quintet.components.particle_dynamics.ranks.several import SeveralRanks
 
     refuse_what_needs_one_rank(params, communicator.size)
-    return SeveralRanks(communicator, state, model, terms, lattice_cells(lattice))
+    shared = SeveralRanks(communicator, state, model, terms, lattice_cells(lattice))
+    return shared if resources.device == "cpu" else _on_devices(resources, shared)
+
+
+def refuse_on_device(params: ParticleLatticeParams, resources: Resources) -> None:
+    """Refuse what the device, or the devices of several ranks, do not compute."""
+    # Lattices on the processor do not load it.
+    from quintet.components.particle_dynamics.opencl.refusal import (
+        refuse_what_needs_one_rank,
+        refuse_what_needs_the_processor,
+    )
+
+    ranks = resources.communicator.size if resources.communicator is not None else 1
+    refuse_what_needs_the_processor(params, resources.device)
+    if ranks > 1:
+        refuse_what_needs_one_rank(params, ranks)
+
+
+def _on_device(resources: Resources, alone: OneRank) -> "DeviceRows":
+    """All points on a device."""
+    # Only a lattice on a device loads pyopencl.
+    from quintet.components.particle_dynamics.opencl.copies import NoCopies
+    from quintet.components.particle_dynamics.opencl.device_rows import DeviceRows
+
+    return DeviceRows(resources, alone, NoCopies())
+
+
+def _on_devices(resources: Resources, shared: "SeveralRanks") -> "DeviceRows":
+    """Points of this rank on its device."""
+    # Only a lattice on devices of several ranks loads pyopencl and mpi4py.
+    from quintet.components.particle_dynamics.opencl.device_rows import DeviceRows
+    from quintet.components.particle_dynamics.opencl.ranks import DeviceCopies
+
+    return DeviceRows(resources, shared, DeviceCopies(resources.communicator, shared))

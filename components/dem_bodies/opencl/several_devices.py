@@ -76,8 +76,8 @@ class SeveralDevices(SeveralRanks):
         count = self.device_rows.count
         ends = np.cumsum([count, *map(len, lists.needed)])
         places = [np.arange(first, last) for first, last in pairwise(ends.tolist())]
-        self._copies.follow([asked - owned.start for asked in lists.asked], places, count)
-        self._loads.follow(lists.loads.sent, lists.loads.arrived, lists.pairs.stride)
+        self._copies.follow([asked - owned.start for asked in lists.asked], places)
+        self._loads.follow(lists.loads.sent, lists.loads.arrived)
         self._host = HostCopy(self.device_rows, lists)
 
     def advance(self, state: State, dt: float, loaded: bool) -> bool:

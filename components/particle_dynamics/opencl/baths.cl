@@ -17,15 +17,16 @@ static double exchanged(
     return after;
 }
 
-/* Velocities of bathed points after a time: the O of BAOAB. The generator stays where it is. */
+/* Velocities of bathed points after a time: the O of BAOAB. The generator stays where it is; each
+   point has the random numbers of its number among those of all ranks. */
 __kernel void exchange(
-    double time, int count, double mass, double boltzmann, int drawn, __global const int *point,
-    __global const double *rate, __global const double *temperature,
+    double time, int count, double mass, double boltzmann, int drawn, __global const int *number,
+    __global const int *point, __global const double *rate, __global const double *temperature,
     __global const long *generator, __global double4 *velocity, __global double *heat)
 {
     const int b = get_global_id(0);
     if (b >= count) return;
-    long counter = counter_after(*generator, (long)drawn * b);
+    long counter = counter_after(*generator, (long)drawn * number[b]);
     const tuple_2r factors = bath_factors(rate[b], temperature[b], mass, boltzmann, time);
     double4 u = velocity[point[b]];
     u.x = exchanged(u.x, factors, mass, &counter, heat + b);

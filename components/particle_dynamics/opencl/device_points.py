@@ -6,8 +6,8 @@ import numpy as np
 
 from quintet.components.particle_dynamics.kernels.forces import Pairs
 from quintet.components.particle_dynamics.kernels.pair_lists import count_others, write_full_lists
-from quintet.components.particle_dynamics.opencl.programs import FREE, FROZEN
-from quintet.components.particle_dynamics.state import TIME, Model, State
+from quintet.components.particle_dynamics.opencl.programs import COPY, FREE, FROZEN
+from quintet.components.particle_dynamics.state import TIME, Model, State, Whole
 from quintet.components.shared.opencl.arrays import DeviceArray
 from quintet.interfaces.component import Array
 
@@ -39,19 +39,30 @@ class DevicePoints:
     state : State
         Of the host.
     model : Model
+    copies : (c,) int array
+        Rows of other ranks' points.
     by_rows : bool
         Whether the neighbours of a point stand together, as processors read them.
     """
 
-    def __init__(self, queue: Any, state: State, model: Model, by_rows: bool) -> None:
+    def __init__(
+        self, queue: Any, state: State, model: Model, copies: Whole, by_rows: bool
+    ) -> None:
         self.queue, self.by_rows, self._host = queue, by_rows, state
         self.count = len(state.position)
-        self._read: set[str] = set()  # arrays of the host's state that are as on the device
+        self._read = set(ON_DEVICE)  # arrays of the host's state that are as on the device
         bathed = model.bathed
         role = np.full(self.count, FREE, np.int32)
         role[bathed.point] = np.arange(len(bathed.point))
         role[model.frozen] = FROZEN
+        role[copies] = COPY
         self.role, self.point = self._of(role), self._of(bathed.point.astype(np.int32))
+        # Of a bathed point, among those of all ranks: random numbers are counted by them.
+        number = np.cumsum(bathed.passed[:-1]) + np.arange(len(bathed.point))
+        self.number, self.bathed = (
+            self._of(number.astype(np.int32)),
+            len(number) + bathed.passed.sum(),
+        )
         self.rate, self.tether = self._of(bathed.rate), self._of(bathed.tether)
         self.rest, self.bonds = self._of(bathed.rest), self._of(model.bonds.astype(np.int32))
         self.temperature = self._of(state.temperature)

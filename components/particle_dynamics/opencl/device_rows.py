@@ -1,78 +1,88 @@
-"""All points of a lattice on an OpenCL device, in the place of `ranks/one.py`.
+"""Points of a lattice on an OpenCL device, in the place of `ranks/one.py` or `ranks/several.py`.
 
 The host's points make the start and the neighbour lists, and compute outputs. An array is copied
 into their state when it is first read after a step. While stepping, only the largest displacement
-and speed are copied back.
+and speed are copied back. On several ranks each has a device, or a part of one; copies of other
+ranks' points are brought up to date in each stage.
 """
 
 import math
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 from quintet.components.particle_dynamics.build import Built
 from quintet.components.particle_dynamics.kernels.motion import EARLY
+from quintet.components.particle_dynamics.opencl.copies import Copies
 from quintet.components.particle_dynamics.opencl.device_points import ON_DEVICE, DevicePoints
 from quintet.components.particle_dynamics.opencl.programs import lattice_program
-from quintet.components.particle_dynamics.opencl.refusal import refuse_what_needs_the_processor
 from quintet.components.particle_dynamics.opencl.stages import Stages
-from quintet.components.particle_dynamics.params import ParticleLatticeParams
-from quintet.components.particle_dynamics.ranks.one import OneRank
-from quintet.components.particle_dynamics.ranks.terms import Terms
-from quintet.components.particle_dynamics.state import TIME, Model, State
+from quintet.components.particle_dynamics.state import TIME, State, Whole
 from quintet.components.shared.opencl.cells import Cells
-from quintet.components.shared.opencl.devices import build, device_of, require_doubles
+from quintet.components.shared.opencl.devices import build, require_doubles
+from quintet.components.shared.opencl.ranks import device_and_queue
 from quintet.components.shared.search.verlet_list import slack
 from quintet.interfaces.component import Array, Fields, Resources
+
+if TYPE_CHECKING:
+    from quintet.components.particle_dynamics.ranks.one import OneRank
+    from quintet.components.particle_dynamics.ranks.several import SeveralRanks
 
 MOST_AT_ONCE = 50  # steps without a look at how far points have moved
 LANES_OF_PROCESSORS = 4  # doubles in one of its vectors; other devices make lanes of points
 
 
 class DeviceRows:
-    """Steps all points on a device, and answers what holds for all of them.
+    """Steps points on a device, all or those of a rank, and answers what holds for all of them.
 
     Parameters
     ----------
     resources : Resources
-    params : ParticleLatticeParams
-    state : State
-        As it starts.
-    model : Model
-    terms : Terms
+    host : OneRank or SeveralRanks
+        The same points on the host.
+    copies : Copies
+        Of other ranks' points.
     """
 
     def __init__(
-        self,
-        resources: Resources,
-        params: ParticleLatticeParams,
-        state: State,
-        model: Model,
-        terms: Terms,
+        self, resources: Resources, host: "OneRank | SeveralRanks", copies: Copies
     ) -> None:
-        refuse_what_needs_the_processor(params, resources.device)
-        device = device_of(resources.device)
+        device, self._queue = device_and_queue(resources)
         require_doubles(device, resources.device)
-        self._host = host = OneRank(state, model, terms)
-        self.state, self.model, self.terms = state, model, terms
-        self.ids, self.owned, self.bathed, self.skin = host.ids, host.owned, host.bathed, host.skin
-        queue, lanes = device.queue(resources.threads), 1
-        if device.is_processor:
-            lanes = LANES_OF_PROCESSORS
-        kernels = build(queue, lattice_program(terms, model, lanes))
-        self.points = DevicePoints(queue, state, model, device.is_processor)
-        self._cells = Cells(queue, kernels, device.is_processor)
-        self._stages = Stages(kernels, self.points, model, terms)
+        self._host, self._copies = host, copies
+        self.bathed, self.ids, self.skin = host.bathed, host.ids, host.skin
+        self._by_rows = device.is_processor
+        lanes = LANES_OF_PROCESSORS if device.is_processor else 1
+        program = lattice_program(host.terms, host.model, lanes)
+        self._kernels = build(self._queue, program + copies.source)
+        self._cells = Cells(self._queue, self._kernels, device.is_processor)
+        copies.connect(self._queue, self._kernels)
+        driven = host.model.driven
+        self._drive: float = copies.greatest(abs(driven.amplitude * driven.frequency))[0]  # m/s
         self._put()
+
+    @property
+    def state(self) -> State:
+        """State of the host, with arrays of an earlier time that have not been read since."""
+        return self._host.state
+
+    @property
+    def owned(self) -> Whole | slice:
+        """Rows of this rank's points."""
+        return self._host.owned
 
     def _put(self) -> None:
         """Copy the host's state and lists to the device."""
-        self.points.put()
+        host = self._host
+        self.points = DevicePoints(self._queue, host.state, host.model, host.copies, self._by_rows)
+        self._stages = Stages(self._kernels, self.points, host.model, host.terms, self._copies)
+        self._copies.follow(self.points)
         self._list()
 
     def _list(self) -> None:
         """Follow the host's lists."""
-        self.points.list_pairs(self._host.lists.pairs)
+        self.points.list_pairs(self._host.pairs)
         self._stages.follow(self.points)
-        self._moved = 0.0  # m, furthest that a point is from where it was listed
+        self._moved = 0.0  # m, furthest that a point of any rank is from where it was listed
         self._speed = math.inf  # m/s, of the fastest point; not known yet
 
     def read(self, *names: str) -> State:
@@ -83,11 +93,11 @@ class DeviceRows:
 
     def reduced(self, built: Built) -> Built:
         """What the lattice was built of, as far as this rank needs it."""
-        return built
+        return self._host.reduced(built)
 
     def advance(self, steps: int, dt: float) -> int:
         """Advance until all steps are done or lists must be made; -1 if points moved too far."""
-        points, has_baths = self.points, len(self.bathed) > 0
+        points, has_baths = self.points, len(self.bathed) > 0  # of this rank
         if has_baths:
             points.temperature.put(self.state.temperature)
         points.forget()
@@ -106,7 +116,7 @@ class DeviceRows:
             done += ahead
             square, speed2 = self._cells.greatest(self.points.extremes, self.points.count)[:2]
             self.points.extremes.clear()
-            self._moved, self._speed = math.sqrt(square), math.sqrt(speed2)
+            self._moved, self._speed = self._copies.greatest(math.sqrt(square), math.sqrt(speed2))
             if not slack(self.skin, self._moved) > 0.0:
                 return -1
             if self.needs_lists():
@@ -122,21 +132,21 @@ class DeviceRows:
         points.
         """
         left = 0.5 * EARLY * self.skin - self._moved  # m, as `slack` has it
-        driven = self.model.driven
-        way = 2.0 * max(self._speed, abs(driven.amplitude * driven.frequency)) * dt
+        way = 2.0 * max(self._speed, self._drive) * dt
         return max(int(min(left / way, MOST_AT_ONCE)), 1) if way > 0.0 else MOST_AT_ONCE
 
     def _step(self, dt: float) -> None:
-        energies, stages = self.state.energies, (self.model.stages * dt).tolist()
+        energies, host = self.state.energies, self._host
+        stages = (host.model.stages * dt).tolist()
         for number, h in enumerate(stages):
             energies[TIME] += h
             end = float(energies[TIME])
-            weight = dt if end > self.terms.averaged_from else 0.0
+            weight = dt if end > host.terms.averaged_from else 0.0
             self._stages.make(h, end, weight, number == len(stages) - 1)
 
     def average_from(self, time: float) -> None:
         """Average kinetic energies from a time [s] on."""
-        self.terms = self.terms._replace(averaged_from=time)
+        self._host.average_from(time)
 
     def needs_lists(self) -> bool:
         """Whether points that are not listed may interact soon."""
@@ -144,18 +154,25 @@ class DeviceRows:
 
     def make_lists(self) -> None:
         """List the pairs of the points where they are now."""
+        if self._copies.are_there:  # points have new rows then
+            self.read()
+            self._host.make_lists()
+            self._put()
+            return
         self.points.get("position")
         self._host.make_lists()
         self.points.put("listed")
         self._list()
 
     def all(self, name: str) -> Array:
-        """Array of the state as it is now; not to be changed."""
-        return self.points.get(name)
+        """Rows of all ranks of an array of the state, on rank 0; not to be changed."""
+        self.points.get(name)
+        return self._host.all(name)
 
     def give(self, *names: str) -> Sequence[Array]:
-        """Copies of some arrays of the state."""
-        return [self.all(name).copy() for name in names]
+        """Copies of the rows of all points, on rank 0, of some arrays of the state."""
+        self.read(*names)
+        return self._host.give(*names)
 
     def pair_energies(self) -> Array:
         """Potential energy (n,) J of the pairs that are listed for each point."""

@@ -24,8 +24,11 @@ HERE = Path(__file__).parent
 NO_DAMPING = PairDamping(0.0, 0.0, 0.0, 0.0)
 VECTOR = (0.0, 0.0, 0.0)
 FAR = 4.0  # spacings: the pair force ends at two
-FREE, FROZEN = -1, -2  # roles of points; those of a bath have its row
-NUMBERS = {"WORK": WORK, "PULL_FIRST": PULL_FIRST, "PULL_SECOND": PULL_SECOND, "FROZEN": FROZEN}
+FREE, FROZEN, COPY = -1, -2, -3  # roles of points; those of a bath have its row
+NUMBERS = {
+    "WORK": WORK, "PULL_FIRST": PULL_FIRST, "PULL_SECOND": PULL_SECOND, "FROZEN": FROZEN,
+    "COPY": COPY,
+}  # fmt: skip
 
 
 class PairTerms(NamedTuple):

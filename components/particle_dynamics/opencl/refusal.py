@@ -2,6 +2,7 @@
 
 from quintet.components.particle_dynamics.params import ParticleLatticeParams
 from quintet.components.shared.opencl.limits import Limit, refuse_wrong
+from quintet.interfaces.errors import SceneError
 
 # Every key of a lattice stands here, in `SUPPORTED`, or in the table of `limits`: a test fails
 # if a new key is in neither.
@@ -14,6 +15,22 @@ SUPPORTED = frozenset(
 def refuse_what_needs_the_processor(params: ParticleLatticeParams, device: str) -> None:
     """Refuse parameters that a device does not compute; see `refuse_wrong`."""
     refuse_wrong(limits(params), device)
+
+
+def refuse_what_needs_one_rank(params: ParticleLatticeParams, ranks: int) -> None:
+    """Refuse what changes points of all ranks at once.
+
+    Raises
+    ------
+    SceneError
+        With the key, and what to do.
+    """
+    rate = params.collision_rate
+    if rate > 0.0:
+        raise SceneError(
+            f"collision_rate must be 0 on devices of {ranks} ranks, as collisions change one "
+            f'another\'s velocities; found {rate:g}. Set ranks = 1, or device = "cpu".'
+        )
 
 
 def limits(params: ParticleLatticeParams) -> dict[str, Limit]:

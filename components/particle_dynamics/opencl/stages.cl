@@ -90,7 +90,7 @@ static void measure(
     extremes[i] = (double4)(max_real(greatest.x, moved), max_real(greatest.y, square), 0, 0);
 }
 
-/* Compute the forces and kick. The list of a point has those of lower number that list it, until
+/* Compute the forces and kick; copies of other ranks' points stay as they are. The list of a point has those of lower number that list it, until
    `first`; those that it lists itself, until `second`; and those of higher number that list it. */
 __kernel void close_stage(
     double half_stage, int is_last, double weight, double mass, int count, Driven driven,
@@ -102,7 +102,7 @@ __kernel void close_stage(
     __global const int *second, __global const int *end, long row_stride, long item_stride)
 {
     const int i = get_global_id(0);
-    if (i >= count) return;
+    if (i >= count || role[i] == COPY) return;
     const double4 r = position[i], u = predicted[i];
     near += (size_t)i * row_stride;
 #define SUM(start, from, to) \

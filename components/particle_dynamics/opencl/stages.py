@@ -1,16 +1,19 @@
 """Stages of the steps of a lattice on a device, as `kernels/motion.py` has them."""
 
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from quintet.components.particle_dynamics.kernels.motion import DRAWN
 from quintet.components.particle_dynamics.laws import prescribed_motion
+from quintet.components.particle_dynamics.opencl.copies import Copies
 from quintet.components.particle_dynamics.opencl.device_points import DevicePoints
 from quintet.components.particle_dynamics.opencl.programs import pair_terms
 from quintet.components.particle_dynamics.ranks.terms import Terms
 from quintet.components.particle_dynamics.state import Model
 from quintet.components.shared.opencl.arrays import GROUP
+from quintet.components.shared.opencl.devices import opencl
 from quintet.components.shared.opencl.launches import Launch
 from quintet.components.shared.opencl.types import bytes_of
 
@@ -25,10 +28,15 @@ class Stages:
     points : DevicePoints
     model : Model
     terms : Terms
+    copies : Copies
+        Of other ranks' points.
     """
 
-    def __init__(self, kernels: Any, points: DevicePoints, model: Model, terms: Terms) -> None:
+    def __init__(
+        self, kernels: Any, points: DevicePoints, model: Model, terms: Terms, copies: Copies
+    ) -> None:
         self._model, arrays, queue = model, points.arrays, points.queue
+        self._copies, kernel = copies, partial(opencl().Kernel, kernels)
         self._is_driven = model.driven.first >= 0
         count, mass = np.int32(points.count), np.float64(model.mass)
         driven, laws = (
@@ -40,36 +48,36 @@ class Stages:
             (arrays["kinetic"], points.extremes),
         )
         self._open = Launch(
-            queue, kernels.open_stage, points.count, count, driven, *places, points.predicted,
+            queue, kernel("open_stage"), points.count, count, driven, *places, points.predicted,
             *powers, arrays["energies"],
         )  # fmt: skip
         self._place = Launch(
-            queue, kernels.place, points.count, count, driven, *places, points.predicted
+            queue, kernel("place"), points.count, count, driven, *places, points.predicted
         )
-        self._close = Launch(queue, kernels.close_stage, points.count)
+        self._close = Launch(queue, kernel("close_stage"), points.count)
         self._closed = (
             mass, count, driven, laws, points.role, points.tether, points.rest, arrays["listed"],
             arrays["position"], points.predicted, arrays["velocity"], arrays["acceleration"],
             *powers, *measured,
         )  # fmt: skip
         self._close_drive = Launch(
-            queue, kernels.close_drive, GROUP, mass, driven, arrays["listed"], *places,
+            queue, kernel("close_drive"), GROUP, mass, driven, arrays["listed"], *places,
             arrays["energies"], *measured,
         )  # fmt: skip
         if model.is_random:
-            self._add_random(kernels, points, terms.boltzmann)
+            self._add_random(kernel, points, terms.boltzmann)
 
-    def _add_random(self, kernels: Any, points: DevicePoints, boltzmann: float) -> None:
+    def _add_random(self, kernel: Any, points: DevicePoints, boltzmann: float) -> None:
         """Add baths and collisions."""
         model, arrays, bathed = self._model, points.arrays, len(self._model.bathed.point)
         numbers = map(np.float64, (model.mass, boltzmann))
         self._exchange = Launch(
-            points.queue, kernels.exchange, bathed, np.int32(bathed), *numbers, np.int32(DRAWN),
-            points.point, points.rate, points.temperature, arrays["generator"],
+            points.queue, kernel("exchange"), bathed, np.int32(bathed), *numbers, np.int32(DRAWN),
+            points.number, points.point, points.rate, points.temperature, arrays["generator"],
             arrays["velocity"], arrays["heat"],
         )  # fmt: skip
         self._collide = Launch(
-            points.queue, kernels.collide, GROUP, np.int64(DRAWN * bathed),
+            points.queue, kernel("collide"), GROUP, np.int64(DRAWN * points.bathed),
             np.int32(len(model.bonds)), points.bonds, arrays["generator"], arrays["velocity"],
         )  # fmt: skip
 
@@ -91,6 +99,7 @@ class Stages:
             self._exchange.run(np.float64(h))
             self._collide.run(np.float64(model.collision_rate * h * len(model.bonds)))
             self._place.run(half, motion)
+        self._copies.exchange()
         step = (half, np.int32(is_last), np.float64(weight))
         self._close.run(*step)
         if self._is_driven:

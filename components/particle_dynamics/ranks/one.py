@@ -6,6 +6,7 @@ import numpy as np
 
 from quintet.components.particle_dynamics.build import Built
 from quintet.components.particle_dynamics.kernels.forces import (
+    Pairs,
     count_intact,
     count_near,
     write_energies,
@@ -33,10 +34,16 @@ class OneRank:
         self.ids: Whole = np.arange(len(state.position))  # points of this rank
         self.owned: Whole | slice = slice(None)  # their rows
         self.bathed: Whole = np.arange(len(state.heat))  # whose baths are computed here
+        self.copies: Whole = np.zeros(0, np.int64)  # rows of other ranks' points
         self.lists = Neighbours(terms.law.cutoff2, terms.lowest, terms.period)
         self.skin = self.lists.skin  # m
         self.lists.rebuild(state.listed)
         begin(model, state, self.lists.pairs, terms.law, terms.damping, terms.period)
+
+    @property
+    def pairs(self) -> Pairs:
+        """Listed pairs, by rows."""
+        return self.lists.pairs
 
     def read(self, *names: str) -> State:
         """State with some arrays as they are now, by default all."""

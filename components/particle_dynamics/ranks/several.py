@@ -8,6 +8,7 @@ import numpy as np
 
 from quintet.components.particle_dynamics.build import Built
 from quintet.components.particle_dynamics.kernels.forces import (
+    Pairs,
     count_intact,
     count_near,
     write_energies,
@@ -105,6 +106,21 @@ class SeveralRanks:
     def owned(self) -> Whole | slice:
         """Rows of this rank's points."""
         return self._layout.owned
+
+    @property
+    def copies(self) -> Whole:
+        """Rows of copies of other ranks' points."""
+        return self._layout.copies
+
+    @property
+    def pairs(self) -> Pairs:
+        """Listed pairs, by rows."""
+        return self._layout.pairs
+
+    @property
+    def exchanged(self) -> tuple[list[Whole], list[Whole]]:
+        """For each rank, the rows that it gets, and those that it fills."""
+        return self._layout.sent, self._layout.received
 
     def read(self, *names: str) -> State:
         """State of this rank's points with some arrays as they are now, by default all."""

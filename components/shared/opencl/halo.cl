@@ -11,13 +11,13 @@ __kernel void pack(
         message[k * (size_t)stride + word + w] = from[row[k] * (size_t)width + w];
 }
 
-/* Copy the rows of a message into rows of an array from the first one on. */
+/* Copy the rows of a message into rows of an array. */
 __kernel void unpack(
-    int first, int count, int width, int word, int stride, __global const long *message,
-    __global long *to)
+    __global const int *row, int count, int width, int word, int stride,
+    __global const long *message, __global long *to)
 {
     const int k = get_global_id(0);
     if (k >= count) return;
     for (int w = 0; w < width; w++)
-        to[(first + k) * (size_t)width + w] = message[k * (size_t)stride + word + w];
+        to[row[k] * (size_t)width + w] = message[k * (size_t)stride + word + w];
 }

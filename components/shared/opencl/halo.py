@@ -1,10 +1,11 @@
 """Copies of the rows of other ranks on a device, brought up to date through the host.
 
-A solver of several ranks has such copies behind its own rows. Rows that others need are packed on
-the device and copied to the host, which exchanges them as `shared/domain/halo.py` does; what
+A solver of several ranks has such copies among its rows. Rows that others need are packed on the
+device and copied to the host, which exchanges them as `shared/domain/halo.py` does; what
 arrives is copied to the device and unpacked there.
 """
 
+from itertools import pairwise
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -36,7 +37,7 @@ class Messages(NamedTuple):
 
 
 class DeviceHalo:
-    """Copies behind the rows of one rank.
+    """Copies among the rows of one rank.
 
     Parameters
     ----------
@@ -53,7 +54,7 @@ class DeviceHalo:
         self._sent_count = 0
         self._messages: dict[int, Messages] = {}  # by the words of a row
 
-    def follow(self, sent: list[Whole], received: list[Whole], rows: int) -> None:
+    def follow(self, sent: list[Whole], received: list[Whole]) -> None:
         """Follow new copies.
 
         Parameters
@@ -61,22 +62,22 @@ class DeviceHalo:
         sent : list of (k,) int array
             For each rank, the rows that it gets.
         received : list of (m,) int array
-            For each rank, the rows into which its rows go, all of them behind the first `rows`.
-        rows : int
-            Of this rank.
+            For each rank, the rows into which its rows go.
         """
-        self._first, self.count = rows, sum(map(len, received))
-        self._sent_count = sum(map(len, sent))
-        self._sent_row = DeviceArray(self.queue, (self._sent_count,), np.int32)
-        if self._sent_count:
-            self._sent_row.put(np.concatenate(sent))
-        ends = np.cumsum([len(part) for part in sent])[:-1]
-        self._staged_sent = np.split(np.arange(self._sent_count), ends)
-        self._staged_received = [part - rows + self._sent_count for part in received]
+        self._sent_count, self.count = sum(map(len, sent)), sum(map(len, received))
+        self._sent_row, self._received_row = map(self._rows, (sent, received))
+        self._staged_sent, self._staged_received = (
+            _staged(sent, 0),
+            _staged(received, self._sent_count),
+        )
         self._messages = {}
 
+    def _rows(self, of_ranks: list[Whole]) -> DeviceArray:
+        """Rows of all ranks, on the device."""
+        return DeviceArray.of(self.queue, np.concatenate(of_ranks).astype(np.int32))
+
     def exchange(self, *arrays: DeviceArray) -> None:
-        """Bring the copies in arrays (rows + copies, ...) up to date.
+        """Bring the copies in arrays (rows, ...) up to date.
 
         Their rows have whole words of 8 bytes.
         """
@@ -96,7 +97,7 @@ class DeviceHalo:
         messages.halo.exchange(messages.staged)
         messages.received.put(messages.staged[sent:])
         for array, words in zip(arrays, numbers, strict=True):
-            rows = np.int32(self._first), np.int32(copies)
+            rows = self._received_row, np.int32(copies)
             run(self.queue, self._unpack, copies, *rows, *words, messages.received, array)
 
     def _of_words(self, words: int) -> Messages:
@@ -111,6 +112,12 @@ class DeviceHalo:
                 Halo(self._communicator, *rows, [words]),
             )
         return self._messages[words]
+
+
+def _staged(of_ranks: list[Whole], first: int) -> list[Whole]:
+    """Rows of a message in which those of each rank stand one after another, from one on."""
+    ends = first + np.cumsum([0, *map(len, of_ranks)])
+    return [np.arange(begin, end) for begin, end in pairwise(ends.tolist())]
 
 
 def _words(array: DeviceArray) -> int:

@@ -45,7 +45,7 @@ class DeviceCopies:
         if not len(state.reference):
             return None
         around = self._host.around(state, reach, boundary.query_points(state)[0])
-        self._halo.follow(*self._host.rows, rows)
+        self._halo.follow(*self._host.rows)
         self._images.follow(rows + self._halo.count)
         return around
 

@@ -18,6 +18,11 @@ def restarted():
     return heap(9, 9, 13, friction=0.1) | {"planes": [*PLANES[1:], {**PLANES[0], "until": 1e-3}]}
 
 
+def crowd():
+    """Spheres in more blocks of rows than ranks: borders are moved in steps of a block."""
+    return heap(13, 13, 17) | {"contact_forces": True}
+
+
 def few():
     """Spheres of which the first rank owns none."""
     return heap(3, 3, 3) | {"contact_forces": True}
@@ -26,7 +31,7 @@ def few():
 class Run(dem_on_ranks.Run):
     """A scene on devices; one of them begins from a run on the processor."""
 
-    scenes = dem_on_ranks.SCENES | {"few": few, "begun": restarted}
+    scenes = dem_on_ranks.SCENES | {"crowd": crowd, "few": few, "begun": restarted}
     resources = Resources(
         1, communicator=COMMUNICATOR, device="opencl:" + ",".join("0" * WORLD.size)
     )

@@ -16,9 +16,9 @@ from quintet.interfaces.errors import SceneError
 
 PROGRAM = Path(__file__).with_name("dem_devices_on_ranks.py")
 NAMES = ("heap", "rolling", "begun", "few")
-LONG = ("heap", "rolling")
+RESUMED, LONG = ("heap", "rolling"), ("crowd", "rolling")
 folder = from_the_start(PROGRAM, NAMES, 60)
-resumed = from_states(PROGRAM, LONG, 30)
+resumed = from_states(PROGRAM, RESUMED, 30)
 long = from_the_start(PROGRAM, LONG, 1000, ranks=(1, 2, 3), moved=(3,))
 
 
@@ -41,7 +41,7 @@ def test_spheres_touch_each_other_and_planes_in_these_runs(folder):
 
 
 @pytest.mark.mpi
-@pytest.mark.parametrize("name", LONG)
+@pytest.mark.parametrize("name", RESUMED)
 def test_a_state_of_two_devices_goes_on_with_three_as_with_one(name, resumed):
     assert differences(resumed, f"{name}-1-1", f"{name}-3-2") == []
 

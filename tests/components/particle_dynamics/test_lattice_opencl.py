@@ -196,11 +196,15 @@ def test_every_key_of_a_lattice_is_supported_or_limited():
     assert keys == SUPPORTED | limited and not SUPPORTED & limited
 
 
-def test_several_ranks_on_a_device_are_refused():
-    settings = ["components.bar.device='opencl'", "components.bar.ranks=2"]
-    words = r"ranks must be 1 of kind particle_lattice on a device; found 2 and opencl"
-    with pytest.raises(SceneError, match=words):
-        load("hot_bar", settings=settings)
+def test_a_scene_may_have_a_lattice_on_several_devices():
+    for device in ("opencl", "opencl:0,1"):
+        settings = [
+            f"components.bar.device='{device}'",
+            "components.bar.ranks=2",
+            "transport='mpi'",
+        ]
+        plan = load("hot_bar", settings=settings).components["bar"]
+        assert (plan.ranks, plan.device) == (2, device)
 
 
 def test_a_device_without_double_precision_is_refused(monkeypatch):
