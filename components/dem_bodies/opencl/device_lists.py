@@ -8,7 +8,7 @@ from quintet.components.dem_bodies.opencl.device_rows import DeviceRows
 class DeviceLists(ContactLists):
     """Pair lists on the host; history, and after a device search newer lists, are on the device."""
 
-    pairs: DevicePairs  # of the device
+    device_pairs: DevicePairs
     are_of_device = False  # whether the device has listed pairs since the host read them
     touching = 0  # most contacts of a row, as the device counts them
 
@@ -22,19 +22,19 @@ class DeviceLists(ContactLists):
 
     def take(self, pairs: DevicePairs) -> None:
         """Take pairs that were copied to the device."""
-        self.pairs, self.are_of_device = pairs, False
+        self.device_pairs, self.are_of_device = pairs, False
 
     def follow(self, pairs: DevicePairs, most_contacts: int) -> None:
         """Follow pairs that the device has listed, and the most that a row has."""
-        self.pairs, self.are_of_device, self.most_contacts = pairs, True, most_contacts
+        self.device_pairs, self.are_of_device, self.most_contacts = pairs, True, most_contacts
 
     def read(self) -> None:
         """Copy pairs with their history and forces to the host; rows have been copied."""
         if self.are_of_device:
-            self.balls = self.pairs.on_host(self.model, self.records_forces)
+            self.balls = self.device_pairs.on_host(self.model, self.records_forces)
             self.are_of_device = False
         if self.balls is not None:
-            self.pairs.get(self.balls)
+            self.device_pairs.get(self.balls)
 
 
 class HostCopy:

@@ -65,7 +65,7 @@ class OneDevice(OneRank):
         self.rows.put()
         self.lists.take(pairs_of_host(self.rows.queue, self.model, balls, all_pairs(balls)))
         self.lists.note_contacts()
-        self.stages.follow(self.lists.pairs)
+        self.stages.follow(self.lists.device_pairs)
         self._host = HostCopy(self.rows, self.lists)
         self._is_finite = False  # not known before a step
 
@@ -98,7 +98,7 @@ class OneDevice(OneRank):
         `travel` [m²] is infinite where none have been listed.
         """
         if self._search is not None and math.isfinite(travel):
-            pairs, most_contacts = self._search.renew(self.lists.pairs)
+            pairs, most_contacts = self._search.renew(self.lists.device_pairs)
             self.lists.follow(pairs, most_contacts)
             self.stages.follow(pairs)
             return True

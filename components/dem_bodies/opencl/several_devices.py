@@ -72,7 +72,7 @@ class SeveralDevices(SeveralRanks):
         self.device_rows.put()
         lists.take(pairs_of_host(self._queue, self.model, lists.balls, lists.numbered()))
         self.stages = Stages(self._kernels, self.device_rows, self.model, self._lanes)
-        self.stages.follow(lists.pairs)
+        self.stages.follow(lists.device_pairs)
         count = self.device_rows.count
         ends = np.cumsum([count, *map(len, lists.needed)])
         places = [np.arange(first, last) for first, last in pairwise(ends.tolist())]
@@ -86,15 +86,15 @@ class SeveralDevices(SeveralRanks):
         shares.work.begin()
         self.device_rows.put_planes()
         self._host.outdate()
-        travel = np.array([self.stages.drift(dt, loaded)])
-        travel = float(greatest(shares.communicator, travel)[0])
+        furthest = np.array([self.stages.drift(dt, loaded)])
+        travel = float(greatest(shares.communicator, furthest)[0])
         holds = slack(self.lists.skin, root(travel)) >= 0.0
         if holds:
             self._copies.exchange(self.device_rows.arrays["motion"])
         elif not self._renew(state):
             return False
         self.stages.touch(dt)
-        pairs = self.lists.pairs
+        pairs = self.lists.device_pairs
         self._loads.exchange(pairs.push, *([] if pairs.moment is None else [pairs.moment]))
         self.stages.kick(dt, loaded)
         self._host.outdate()

@@ -172,7 +172,7 @@ class SharedLists(ContactLists):
         shares, pairs = self.shares, self.balls
         partner, row = pairs.partner.astype(np.int64), pairs.row.astype(np.int64)
         leaves = ((row // BLOCK + 1) * BLOCK <= partner) & (partner < shares.rows)
-        count = np.count_nonzero(leaves)
+        count = int(np.count_nonzero(leaves))
         loads = link_loads(shares, rows, partner[leaves], np.arange(count), count)
         self.incoming_begin[rows.start : rows.stop + 1] = loads.incoming_begin
         arrived_rows = np.concatenate(loads.arrived_rows)
