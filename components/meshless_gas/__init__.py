@@ -37,5 +37,4 @@ MANIFEST = Manifest(
     bench="quintet.components.meshless_gas.bench:cases",
     conform="quintet.components.meshless_gas.conform:cases",
     opencl="quintet.components.meshless_gas.opencl.device_gas:DeviceGas",
-    opencl_limits="quintet.components.meshless_gas.opencl.refusal:refuse_what_needs_the_processor",
 )

@@ -119,6 +119,14 @@ class MovingClouds(NodeMotion):
 
     def begin(self, dt: float, primitive: Array, conservative: Array) -> None:
         """Move clouds to the step's start; cut holes again if bodies have moved far enough."""
+        self.move_to_start(dt)
+        if self.holes.are_old(self.pose.centre):
+            self.cut_again(primitive, conservative)
+        else:
+            self.fringe.refit(self.pose.centre)
+
+    def move_to_start(self, dt: float) -> None:
+        """Move bodies and the nodes of their clouds to the start of a step of dt [s]."""
         if self.middle is not None:
             moved = self.middle - 0.5 * dt * self.pose.velocity[self.driven]
             near = self.layout.spacing[self.driven]
@@ -128,15 +136,12 @@ class MovingClouds(NodeMotion):
         self._place(self.pose.centre)
         self._set_frame()
         self.summed[:] = 0.0
-        if self.holes.are_old(self.pose.centre):
-            self._fill(self._cut(), primitive, conservative)
-        else:
-            self.fringe.refit(self.pose.centre)
 
-    def _fill(self, fresh: Rows, primitive: Array, conservative: Array) -> None:
-        """Write the states of nodes that came back."""
+    def cut_again(self, primitive: Array, conservative: Array) -> Rows:
+        """Cut holes; return the nodes that came back, whose states are written."""
+        fresh = self._cut()
         if not len(fresh):
-            return
+            return fresh
         fill_fresh_nodes(
             fresh, self.holes.active, self.pose.centre, self.domain.cloud, self.layout, self.team,
             primitive,
@@ -144,6 +149,7 @@ class MovingClouds(NodeMotion):
         states = np.empty((len(fresh), 5))
         write_conservative(primitive[fresh], self.gamma, states)
         conservative[fresh] = states
+        return fresh
 
     def place(self, stage: int, dt: float) -> None:
         """Move clouds to where they are at a stage, and fit coefficients across fringes again."""
@@ -215,8 +221,8 @@ class MovingClouds(NodeMotion):
         self.fringe.refit(centre)
 
     def _place(self, centre: Array) -> None:
-        """Place the nodes of all clouds, and their images beyond the axis."""
-        positions, layout = self.domain.cloud.positions, self.layout
+        """Place the nodes of all clouds round centres (b, 3) m, and images beyond the axis."""
+        positions, layout, self.placed = self.domain.cloud.positions, self.layout, centre
         positions[layout.carried] = layout.offsets + centre[layout.carrier]
         positions[layout.images] = positions[layout.imaged] * np.array([1.0, 1.0, -1.0])
 

@@ -5,13 +5,12 @@ import numpy as np
 from quintet.components.meshless_gas.clouds.cloud import Cloud
 from quintet.components.meshless_gas.laws.transport import Transport, sutherland
 from quintet.components.meshless_gas.moving.friction import BodyFriction
+from quintet.components.meshless_gas.moving.kernels.held_walls import write_held_walls
 from quintet.components.meshless_gas.moving.kernels.walls import FORCE, HEAT, POWER, TORQUE
 from quintet.components.meshless_gas.moving.layout import CloudLayout
 from quintet.components.meshless_gas.moving_bodies import Moving
 from quintet.components.meshless_gas.viscous.kernels.walls import write_tractions
 from quintet.interfaces.component import Array
-
-LEAST = 0.3  # of the nearer node's temperature: what an adiabatic wall must keep
 
 
 class NoSlipBodies(BodyFriction):
@@ -22,8 +21,10 @@ class NoSlipBodies(BodyFriction):
         warmth = np.array([body.temperature or 0.0 for body in params.bodies])[layout.body]
         insulating = np.array([body.is_adiabatic for body in params.bodies])[layout.body]
         self.held = np.flatnonzero((warmth > 0.0) | insulating)
-        self.law, self.layout, self.temperature = law, layout, warmth[self.held]
-        self.insulating = np.flatnonzero(insulating[self.held])  # of those that are held
+        self.law, self.layout = law, layout
+        # Of those that are held: negative where they are adiabatic.
+        self.temperature = np.where(insulating, -1.0, warmth)[self.held]  # K
+        self.insulating = np.flatnonzero(self.temperature < 0.0)
         self.rows = layout.walls[self.held].astype(np.int32)
         self.above = layout.above[self.held].astype(np.int32)
         # Of nodes of bodies' clouds, from the body's centre: slopes at walls are then the same to
@@ -33,20 +34,10 @@ class NoSlipBodies(BodyFriction):
 
     def write_walls(self, velocity: Array, primitive: Array) -> None:
         """Write the states of no-slip walls: their velocity and temperature, at their pressure."""
-        rows = self.rows
-        if len(self.insulating):
-            self._level(primitive)
-        primitive[rows, 0] = primitive[rows, 4] / (self.law.gas_constant * self.temperature)
-        primitive[rows, 1:4] = velocity[self.held]
-
-    def _level(self, primitive: Array) -> None:
-        """Give adiabatic walls the temperature of the parabola that is level there."""
-        near, far = primitive[self.above[self.insulating]].transpose(1, 0, 2)
-        first, second = (q[:, 4] / (q[:, 0] * self.law.gas_constant) for q in (near, far))
-        low, high = self.layout.heights[self.held[self.insulating]].T ** 2
-        level = (first * high - second * low) / (high - low)
-        # Where a shock lies between the two, that of the nearer.
-        self.temperature[self.insulating] = np.where(level > LEAST * first, level, first)
+        write_held_walls(
+            self.rows, self.above, self.layout.heights[self.held], velocity[self.held],
+            self.temperature, self.law.gas_constant, primitive,
+        )  # fmt: skip
 
     def add_loads(
         self, cloud: Cloud, velocity: Array, spin: Array, primitive: Array, loads: Array
@@ -64,7 +55,7 @@ class NoSlipBodies(BodyFriction):
         )  # fmt: skip
         if spin.any():
             turning = np.cross(spin[layout.body[held]], cloud.normals[self.rows])  # 1/s
-            viscosity = [sutherland.py_func(kelvin, self.law) for kelvin in self.temperature]
+            viscosity = [sutherland.py_func(kelvin, self.law) for kelvin in self._warmth(primitive)]
             friction -= np.array(viscosity)[:, None] * turning
         heat[self.insulating] = 0.0
         self.friction[held], self.heat[held] = friction, heat
@@ -77,3 +68,9 @@ class NoSlipBodies(BodyFriction):
             loads[b, TORQUE] += torque[mine].sum(axis=0)
             loads[b, POWER] -= work[mine].sum()
             loads[b, HEAT] += (size * self.heat)[mine].sum()
+
+    def _warmth(self, primitive: Array) -> Array:
+        """Temperatures [K] of the walls; those of adiabatic walls are the gas's."""
+        warmth, rows = self.temperature.copy(), self.rows[self.insulating]
+        warmth[self.insulating] = primitive[rows, 4] / (primitive[rows, 0] * self.law.gas_constant)
+        return warmth

@@ -35,6 +35,7 @@ class FringeStencils:
         self.fitted = np.zeros((len(layout.radii), 3))  # m, centres when coefficients were written
         self.touched = np.zeros(0, np.int64)  # nodes whose neighbours are not those of their cloud
         self.across = np.zeros(0, np.int64)  # of these, those that reach over an overlap
+        self.written = np.zeros(0, np.int64)  # nodes whose coefficients were written last
         self.no_slip = np.isin(cloud.kind[: cloud.nodes], NO_SLIP_KINDS)
         self.edges, self.weights = domain.edges, domain.weights  # of boundary nodes of the box
         self.place = np.full(len(cloud.positions), -1)  # of nodes among these
@@ -103,7 +104,7 @@ class FringeStencils:
 
     def fit(self, rows: Rows) -> None:
         """Write the coefficients of nodes."""
-        cloud, stencils = self.cloud, self.stencils
+        cloud, stencils, self.written = self.cloud, self.stencils, rows
         weight = cloud.weight
         if len(self.across):
             weight = weight.copy()
@@ -118,10 +119,14 @@ class FringeStencils:
             raise StepError(too_few(self.layout.fringe_count, place), place)
         self.weigh(rows)
 
+    def edges_of(self, rows: Rows) -> Rows:
+        """Places, among the boundary nodes, of those of some nodes that are there."""
+        places = self.place[rows]
+        return np.asarray(places[places >= 0])
+
     def weigh(self, rows: Rows) -> None:
         """Write the weights of neighbours within of those of some nodes that are at boundaries."""
-        places = self.place[rows]
-        places = places[places >= 0]
+        places = self.edges_of(rows)
         if not len(places):
             return
         edges, cloud = self.edges[places], self.cloud
@@ -134,6 +139,7 @@ class FringeStencils:
 
     def refit(self, centre: Array) -> None:
         """Write the coefficients of what reaches over overlaps of clouds that have moved."""
+        self.written = self.written[:0]
         moved = np.append(False, (centre != self.fitted).any(axis=1))  # of each region
         if len(self.across) and moved.any():
             region, near = self.cloud.region, self.stencils.neighbours[self.across]

@@ -1,4 +1,4 @@
-"""A fixed cloud in the memory of a device: nodes, stencils, boundaries, copied once."""
+"""A cloud in the memory of a device: nodes, stencils, boundaries."""
 
 import numpy as np
 
@@ -6,11 +6,11 @@ from quintet.components.meshless_gas.build import Domain
 from quintet.components.shared.opencl.arrays import DeviceArray
 from quintet.components.shared.opencl.tables import Tables
 
-INDEX = np.int32  # of a node
+INDEX = np.dtype(np.int32)  # of a node
 
 
 class DeviceCloud:
-    """Arrays of a fixed cloud; no step changes them.
+    """Arrays of a cloud; no step changes them, unless nodes go with bodies.
 
     Parameters
     ----------
@@ -20,28 +20,38 @@ class DeviceCloud:
 
     def __init__(self, domain: Domain, tables: Tables) -> None:
         cloud, (neighbours, coefficients) = domain.cloud, domain.stencils
+        self.tables = tables
         self.nodes, self.whole, self.width = cloud.nodes, *neighbours.shape
         self.ghosts = self.whole - self.nodes
         self.neighbours = tables.of(neighbours, INDEX)
         self.coefficients = tables.of(coefficients)  # 1/m, 3 of each neighbour
         self.positions = tables.of(cloud.positions)  # m
         self.normals, self.areas = tables.of(cloud.normals), tables.of(cloud.areas)
-        rows = (domain.inner, domain.edges, domain.bounding, domain.mirrored)
-        self.inner, self.edges, self.bounding, self.mirrored = (
-            self._whole_numbers(tables, numbers) for numbers in rows
-        )
-        self.kind, self.patch = (
-            self._whole_numbers(tables, numbers) for numbers in (cloud.kind, cloud.patch)
+        rows = (domain.edges, domain.bounding, domain.mirrored, cloud.kind, cloud.patch)
+        self.edges, self.bounding, self.mirrored, self.kind, self.patch = map(
+            self._whole_numbers, rows
         )
         self.weights = tables.of(domain.weights)
         self.patches = DeviceArray.of(tables.queue, domain.patches)  # by rows
-        planes = domain.outflows
-        self.outflows = self._whole_numbers(tables, planes.rows)
-        self.near = tables.of(planes.near, INDEX)
-        self.planes = tables.of(planes.weights)
-        self.owner = self._whole_numbers(tables, cloud.owner)
+        self.owner = self._whole_numbers(cloud.owner)
         self.turn = DeviceArray.of(tables.queue, cloud.turn)  # by rows
+        self.put_rows(domain)
 
-    @staticmethod
-    def _whole_numbers(tables: Tables, numbers: np.ndarray) -> DeviceArray:
-        return DeviceArray.of(tables.queue, numbers.astype(INDEX))
+    def put_rows(self, domain: Domain) -> None:
+        """Copy which nodes are advanced, and the planes at outflows."""
+        planes = domain.outflows
+        self.inner, self.outflows = map(self._whole_numbers, (domain.inner, planes.rows))
+        self.near = self.tables.of(planes.near, INDEX)
+        self.planes = self.tables.of(planes.weights)
+
+    def put(self, domain: Domain) -> None:
+        """Copy all that changes where nodes go with bodies, but for their places."""
+        cloud, (neighbours, coefficients), put = domain.cloud, domain.stencils, self.tables.put
+        put(self.neighbours, neighbours)
+        put(self.coefficients, coefficients)
+        put(self.weights, domain.weights)
+        put(self.areas, cloud.areas)
+        self.put_rows(domain)
+
+    def _whole_numbers(self, numbers: np.ndarray) -> DeviceArray:
+        return DeviceArray.of(self.tables.queue, numbers.astype(INDEX))

@@ -3,35 +3,35 @@
 A `MeshlessGas` on the host makes the nodes, and reads gauges, totals, views, checks and snapshots;
 the states are copied into its arrays first. A step copies back the flows through the boundary, the
 shortest stable step and the change of the densities. Point particles stay on the host: with them
-each stage copies the states.
+each stage copies the states. So do bodies that carry clouds: it moves them, and computes the loads
+on them from the states at their walls.
 """
 
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from quintet.components.meshless_gas import MANIFEST
 from quintet.components.meshless_gas.component import MeshlessGas
 from quintet.components.meshless_gas.diagnostics import step_error
 from quintet.components.meshless_gas.kernels.motion import STAGES
-from quintet.components.meshless_gas.opencl.refusal import refuse_what_needs_the_processor
+from quintet.components.meshless_gas.opencl.features import bodies_of, particles_of, terms
 from quintet.components.meshless_gas.opencl.stepping import Outcome, Stepping
 from quintet.components.meshless_gas.params import MeshlessGasParams
-from quintet.components.meshless_gas.parts import FixedNodes, WallFriction
 from quintet.components.meshless_gas.ports import SHOWS
-from quintet.components.meshless_gas.ranks.one import OneRank
 from quintet.components.shared.opencl.device_component import DeviceComponent
 from quintet.components.shared.opencl.devices import device_of, require_doubles
-from quintet.components.shared.opencl.limits import refuse_parts
-from quintet.interfaces.component import Fields, Resources
+from quintet.interfaces.component import Array, Fields, Resources
 
 if TYPE_CHECKING:
-    from quintet.components.meshless_gas.point_particles.point_particles import CoupledParticles
+    from quintet.components.meshless_gas.opencl.bodies import DeviceBodies
 
 FIRST_DEVICE = Resources(device="opencl")
 
 
 class DeviceGas(DeviceComponent):
-    """Moves a gas through the nodes of a fixed cloud, on a device."""
+    """Moves a gas through the nodes of a cloud, on a device."""
 
     Params: type[MeshlessGasParams] = MeshlessGasParams
     manifest = MANIFEST
@@ -39,35 +39,15 @@ class DeviceGas(DeviceComponent):
     host: MeshlessGas
 
     def __init__(self, params: MeshlessGasParams, resources: Resources = FIRST_DEVICE) -> None:
-        refuse_what_needs_the_processor(params, resources.device)
         device = device_of(resources.device)
         require_doubles(device, resources.device)
         self.params, (self.takes, self.gives) = params, self.ports_of(params)
         self.host = MeshlessGas(params, replace(resources, device="cpu"))
-        self._particles = particles(self.host)
-        self._refuse_other_parts(resources.device)
-        domain = self.host.motion.domain
-        self.stepping = Stepping(params, device, resources.threads, domain, self.host.friction)
-        for part in self._particles:
-            # Left out of scenes without particles.
-            from quintet.components.meshless_gas.opencl.particles import DeviceParticles
-
-            self.stepping.particles = DeviceParticles(
-                part, domain, self.host.fluxes, self.stepping.state
-            )
+        self._particles = particles_of(self.host)
+        self.stepping = Stepping(params, device, resources.threads, self.host.motion.domain)
+        self.stepping.parts = terms(self.host, self.stepping.state, resources.device)
+        self._bodies = bodies_of(self.host, self.stepping.parts)
         self._put()
-
-    def _refuse_other_parts(self, device: str) -> None:
-        """Refuse parts that only a step on the processor calls."""
-        host = self.host
-        known = (FixedNodes, WallFriction)
-        names = [
-            type(part).__name__
-            for part in host.parts
-            if not isinstance(part, known) and part not in self._particles
-        ]
-        names += [] if isinstance(host.all_ranks, OneRank) else [type(host.all_ranks).__name__]
-        refuse_parts(names, device, "a gas")
 
     def prime(self, fields: Fields) -> None:
         """Take the places of particles at the start."""
@@ -88,6 +68,8 @@ class DeviceGas(DeviceComponent):
             return
         for part in self._particles:
             part.begin(dt, host.fluxes.primitive, state.conservative)
+        for bodies in self._bodies:
+            self._begin(bodies, dt)
         self._is_read = False
         outcome = self.stepping.step(dt, host.scheme.shortest_step)
         if outcome.wrong >= 0:
@@ -97,10 +79,9 @@ class DeviceGas(DeviceComponent):
                 [outcome.wrong], host.motion.domain, host.fluxes.primitive, host.state.time, share,
                 host.params.planar, host.team, host.all_ranks,
             )  # fmt: skip
-        flows = [host.fluxes.flows.copy(), *outcome.flows[:-1]]  # at the begin of each stage
-        for (_, _, share), entering in zip(STAGES, flows, strict=True):
-            state.entered += share * dt * entering
-            state.work += share * dt * float(entering[4])
+        if not self._bodies:  # boundaries are as they were after the last step
+            outcome.flows[0] = host.fluxes.flows
+        self._count(dt, outcome.flows)
         for part in self._particles:
             state.entered -= dt * part.loss_rates()
         state.time += dt
@@ -110,6 +91,34 @@ class DeviceGas(DeviceComponent):
             self._get()
         host.monitor.update(host.fluxes.primitive, state.change, state.time)
 
+    def _begin(self, bodies: "DeviceBodies", dt: float) -> None:
+        """Let the host move bodies to the start of a step of dt [s], and the device follow."""
+        host, motion, fresh = self.host, bodies.motion, None
+        motion.move_to_start(dt)
+        if motion.holes.are_old(motion.pose.centre):
+            self._get()
+            fresh = motion.cut_again(host.fluxes.primitive, host.state.conservative)
+        else:
+            motion.fringe.refit(motion.pose.centre)
+        bodies.begin(fresh, host.fluxes.primitive, host.state.conservative)
+
+    def _count(self, dt: float, flows: Array) -> None:
+        """Count what entered in a step of dt [s], by the flows (4, 5) kg/s, N, W at its moments.
+
+        Those through the walls of bodies are added to them.
+        """
+        state, motion = self.host.state, self.host.motion
+        walls = [bodies.states_at_walls() for bodies in self._bodies]
+        shares = [share for _, _, share in STAGES]
+        for moment, share in enumerate([*shares, None]):
+            for rows, states in walls:
+                self.host.fluxes.primitive[rows] = states[moment]
+                motion.add_flows(motion.domain, self.host.fluxes.primitive, flows[moment])
+            if share is not None:  # at the step's end the loads and flows are those of the next one
+                motion.sum_loads(share)
+                state.entered += share * dt * flows[moment]
+                state.work += share * dt * (float(flows[moment, 4]) - motion.partner_power())
+
     def _follow(self, outcome: Outcome) -> None:
         """Let the host have the flows and the stable step of the states as they are."""
         self.host.fluxes.flows[:] = outcome.flows[-1]
@@ -118,27 +127,20 @@ class DeviceGas(DeviceComponent):
     def _put(self) -> None:
         """Copy the host's state to the device."""
         host = self.host
+        for bodies in self._bodies:
+            bodies.put()
         outcome = self.stepping.put(host.fluxes.primitive, host.state.conservative)
         self._is_read = False  # boundaries have the bits of the device
         self._follow(outcome)
 
     def _read(self) -> None:
         """Copy the states into the host's arrays; find loads on walls."""
-        host = self.host
+        host, domain = self.host, self.host.motion.domain
         self.stepping.state.get(host.fluxes.primitive, host.state.conservative)
-        host.friction.add_flows(host.motion.domain, host.fluxes.primitive, host.fluxes.flows.copy())
+        for part in (host.friction, host.motion):
+            part.add_flows(domain, host.fluxes.primitive, np.zeros(5))
 
     def warnings(self) -> dict[str, str]:
         """Doubts about the cloud and the order, and about inflows at which waves have arrived."""
         self._get()
         return self.host.warnings()
-
-
-def particles(gas: MeshlessGas) -> "list[CoupledParticles]":
-    """Point particles of a gas on the processor."""
-    if gas.params.particles is None:
-        return []
-    # Left out of scenes without particles.
-    from quintet.components.meshless_gas.point_particles.point_particles import CoupledParticles
-
-    return [part for part in gas.parts if isinstance(part, CoupledParticles)]

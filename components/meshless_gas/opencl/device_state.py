@@ -8,7 +8,7 @@ from quintet.components.meshless_gas.build import Domain
 from quintet.components.meshless_gas.kernels.motion import STAGES
 from quintet.components.meshless_gas.laws.limiters import limiter_of
 from quintet.components.meshless_gas.opencl.device_cloud import DeviceCloud
-from quintet.components.meshless_gas.opencl.programs import gas_program
+from quintet.components.meshless_gas.opencl.programs import gas_program, physics_of
 from quintet.components.meshless_gas.params import MeshlessGasParams
 from quintet.components.shared.opencl.arrays import GROUP, DeviceArray, run
 from quintet.components.shared.opencl.devices import Device, build
@@ -36,10 +36,8 @@ class DeviceState:
         self.queue = device.queue(threads)
         self.tables = Tables(self.queue, device.is_processor)
         self.lanes = LANES_OF_PROCESSORS if device.is_processor else 1
-        text = gas_program(
-            limiter_of(params.limiter, params.limiter_threshold), params.planar,
-            params.order == 2, params.viscous, self.lanes, self.tables.by_rows,
-        )  # fmt: skip
+        limiter = limiter_of(params.limiter, params.limiter_threshold)
+        text = gas_program(limiter, physics_of(params), self.lanes, self.tables.by_rows)
         # A kernel is made once: pyopencl makes another at each look.
         kernels = build(self.queue, text).all_kernels()
         self._kernels = {kernel.function_name: kernel for kernel in kernels}
@@ -53,11 +51,19 @@ class DeviceState:
         self.lowest, self.sound, self.bounds = (
             DeviceArray(self.queue, (count,)) for count in (whole, whole, nodes)
         )
+        # m/s, of nodes; there where some move. Kernels that need it take it as one more argument.
+        self.frame = [empty(whole, 3)] if params.moving is not None else []
+        for frame in self.frame:
+            frame.clear()
         self.wrong = DeviceArray(self.queue, (len(STAGES),), np.int32)  # see stages.cl
 
     def run(self, name: str, rows: int, *arguments: Any) -> None:
         """Run a kernel for so many rows; work items beyond them must return at once."""
         run(self.queue, self._kernels[name], rows, *arguments)
+
+    def has_failed(self) -> bool:
+        """Whether a stage of this step has failed."""
+        return bool((self.wrong.get() >= 0).any())
 
     def put(self, primitive: Array, conservative: Array) -> None:
         """Copy states (m, 5) of nodes and ghosts and (n, 5) of nodes; clear rates and failures."""

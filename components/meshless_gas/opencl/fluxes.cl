@@ -26,20 +26,28 @@ __kernel void write_residuals(
     __global const double *positions, __global const double *primitive,
     __global const double *gradients, __global const double *lowest,
     __global const int *neighbours, __global const double *coefficients, double gamma,
-    Limiter limiter, __global double *residual)
+    Limiter limiter, __global double *residual OF_MOTION)
 {
     const int begin = get_global_id(0) * LANES;
     if (begin >= count) return;
 #define INNER_NODE(lane) rows[min(begin + lane, count - 1)]
     NODES_OF(i, INNER_NODE);
-    const States state_i = STATES_OF(i);
+    States state_i = STATES_OF(i);
+#ifdef MOVING
+    const reals frame_x = GATHERED(frame, i, 0, 3, whole), frame_y = GATHERED(frame, i, 1, 3, whole);
+    const reals frame_z = GATHERED(frame, i, 2, 3, whole);
+    state_i.f1 -= frame_x, state_i.f2 -= frame_y, state_i.f3 -= frame_z;
+#endif
     const reals least_i = GATHERED(lowest, i, 0, 1, whole);
     States sum = {0, 0, 0, 0, 0};
     for (int k = 0; k < width; k++) {
 #define NEIGHBOUR(lane) neighbours[AT(i##lane, k, width, whole)]
         NODES_OF(j, NEIGHBOUR);
         if (ARE_SAME(i, j)) continue; /* rows are padded with the node itself */
-        const States state_j = STATES_OF(j);
+        States state_j = STATES_OF(j);
+#ifdef MOVING
+        state_j.f1 -= frame_x, state_j.f2 -= frame_y, state_j.f3 -= frame_z;
+#endif
         const Directions direction = pair_direction(
             GATHERED(coefficients, i, 3 * k, 3 * width, whole),
             OF_SPACE(GATHERED(coefficients, i, 3 * k + 1, 3 * width, whole)),
@@ -74,6 +82,9 @@ __kernel void write_residuals(
         sum.f3 += rates.f3;
         sum.f4 += rates.f4;
     }
+#ifdef MOVING
+    sum = in_laboratory(sum, frame_x, frame_y, frame_z);
+#endif
     const int lanes = count - begin;
     SCATTERED(residual, i, 0, 5, nodes, sum.f0, lanes);
     SCATTERED(residual, i, 1, 5, nodes, sum.f1, lanes);

@@ -1,17 +1,24 @@
 """Friction and heat conduction on a device, as `viscous/terms.py`; only for scenes with them."""
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from quintet.components.meshless_gas.kernels.motion import STAGES
 from quintet.components.meshless_gas.opencl.device_cloud import INDEX
 from quintet.components.meshless_gas.opencl.device_state import DeviceState, groups
+from quintet.components.meshless_gas.opencl.parts import DevicePart
+from quintet.components.meshless_gas.parts import Stage
 from quintet.components.meshless_gas.viscous.terms import Viscous
 from quintet.components.shared.opencl.arrays import DeviceArray
 from quintet.components.shared.opencl.types import bytes_of
 from quintet.interfaces.component import Array
 
+if TYPE_CHECKING:
+    from quintet.components.meshless_gas.opencl.sliding import DeviceSliding
 
-class DeviceFriction:
+
+class DeviceFriction(DevicePart):
     """Terms of viscosity of one gas.
 
     Parameters
@@ -32,12 +39,13 @@ class DeviceFriction:
         self._weights, self._velocity = tables.of(friction.weights), tables.of(friction.velocity)
         self._temperature = DeviceArray.of(queue, friction.temperature)
         self._sizes = DeviceArray.of(queue, np.sqrt((friction.areas**2).sum(axis=1)))
+        self.sliding = sliding_walls(friction, state)
         whole = state.cloud.whole
-        self._transported, self._slopes = tables.empty(whole, 2), tables.empty(whole, 3)
+        self.transported, self.slopes = tables.empty(whole, 2), tables.empty(whole, 3)
         self._groups = groups(self.walls)
-        self._parts = DeviceArray.of(queue, np.zeros((len(STAGES), self._groups, 5)))
+        self._parts = DeviceArray.of(queue, np.zeros((len(STAGES) + 1, self._groups, 5)))
 
-    def add_rates(self) -> None:
+    def add_rates(self, dt: float, stage: Stage) -> None:
         """Add rates of momentum and energy, by the gradients of this stage."""
         state, cloud = self.state, self.state.cloud
         nodes, whole, width = map(np.int32, (cloud.nodes, cloud.whole, cloud.width))
@@ -45,17 +53,17 @@ class DeviceFriction:
         self._write_transport()
         state.run(
             "write_temperature_slopes", cloud.nodes, nodes, whole, width, *stencils,
-            self._transported, self._slopes,
+            self.transported, self.slopes,
         )  # fmt: skip
         state.run(
             "write_ghost_slopes", cloud.ghosts, nodes, whole, cloud.owner, cloud.turn,
-            self._slopes,
+            self.slopes,
         )  # fmt: skip
         count = cloud.inner.shape[0]
         state.run(
             "add_friction", -(-count // state.lanes), np.int32(count), nodes, whole, width,
-            cloud.inner, cloud.positions, state.primitive, self._transported,
-            state.gradients, self._slopes, *stencils, self._law, state.residual,
+            cloud.inner, cloud.positions, state.primitive, self.transported,
+            state.gradients, self.slopes, *stencils, self._law, state.residual,
         )  # fmt: skip
 
     def write_walls(self) -> None:
@@ -66,18 +74,23 @@ class DeviceFriction:
             np.int32(cloud.width), self._rows, cloud.neighbours, self._weights, cloud.normals,
             self._velocity, self._temperature, self._gamma, self._law, self.state.primitive,
         )  # fmt: skip
+        for sliding in self.sliding:
+            sliding.write_walls(
+                self._rows, self._above, self._velocity, self._temperature, self._law
+            )
 
-    def sum_flows(self, stage: int) -> None:
-        """Sum the friction and the heat flux of all walls after a stage."""
-        cloud, first = self.state.cloud, np.int32(5 * stage * self._groups)
+    def sum_flows(self, moment: int) -> None:
+        """Sum the friction and the heat flux of all walls at a moment of a step."""
+        cloud, first = self.state.cloud, np.int32(5 * moment * self._groups)
+        more = [argument for sliding in self.sliding for argument in sliding.arguments]
         self.state.run(
             "sum_wall_flows", self.walls, np.int32(self.walls), np.int32(cloud.whole), self._rows,
             self._above, cloud.positions, cloud.normals, self._sizes, self._velocity,
-            self._temperature, self.state.primitive, self._law, first, self._parts,
+            self._temperature, self.state.primitive, self._law, first, self._parts, *more,
         )  # fmt: skip
 
     def flows(self) -> Array:
-        """What friction and conduction add (3, 5) kg/s, N, W to what enters, after each stage."""
+        """What friction and conduction add (4, 5) kg/s, N, W to what enters."""
         return np.asarray(self._parts.get().sum(axis=1))
 
     def shorten(self, first: np.int32, parts: DeviceArray) -> None:
@@ -87,7 +100,7 @@ class DeviceFriction:
         self._write_transport()
         state.run(
             "shorten_bounds", cloud.inner.shape[0], count, whole, width, cloud.inner,
-            cloud.positions, state.primitive, self._transported, cloud.neighbours,
+            cloud.positions, state.primitive, self.transported, cloud.neighbours,
             cloud.coefficients, self._gamma, self._spread, state.bounds, first, parts,
         )  # fmt: skip
 
@@ -96,5 +109,15 @@ class DeviceFriction:
         whole = self.state.cloud.whole
         self.state.run(
             "write_transport", whole, np.int32(whole), self.state.primitive, self._law,
-            self._transported,
+            self.transported,
         )  # fmt: skip
+
+
+def sliding_walls(friction: Viscous, state: DeviceState) -> "list[DeviceSliding]":
+    """Walls along which a rarefied gas slides, if there are any."""
+    if not friction.rarefied:
+        return []
+    # Left out where no gas slides along walls.
+    from quintet.components.meshless_gas.opencl.sliding import DeviceSliding
+
+    return [DeviceSliding(part, len(friction.rows), state) for part in friction.rarefied]

@@ -8,12 +8,13 @@ import numpy as np
 
 from quintet.components.meshless_gas.build import Domain
 from quintet.components.meshless_gas.opencl.device_state import DeviceState
+from quintet.components.meshless_gas.opencl.parts import DevicePart
 from quintet.components.meshless_gas.parts import Stage
 from quintet.components.meshless_gas.point_particles.point_particles import CoupledParticles
 from quintet.components.meshless_gas.state import Fluxes
 
 
-class DeviceParticles:
+class DeviceParticles(DevicePart):
     """The exchange of particles with one gas.
 
     Parameters
@@ -36,7 +37,7 @@ class DeviceParticles:
     def add_rates(self, dt: float, stage: Stage) -> None:
         """Exchange momentum and heat in a stage of a step [s]."""
         work, state, tables = self.work, self.state, self.state.tables
-        if (state.wrong.get() >= 0).any():
+        if state.has_failed():
             return  # the step fails: loads of the last valid stage are left
         work.primitive[:] = tables.get(state.primitive)
         work.residual[:] = 0.0

@@ -1,10 +1,12 @@
 """The program of a gas: its laws, printed for what a scene asks for, and loops over nodes."""
 
 from pathlib import Path
+from typing import NamedTuple
 
 from quintet.components.meshless_gas.laws import boundaries, fluxes, outflows, states
 from quintet.components.meshless_gas.laws.limiters import Limiter
 from quintet.components.meshless_gas.opencl.printing import named
+from quintet.components.meshless_gas.params import MeshlessGasParams
 from quintet.components.shared.opencl.arrays import GROUP
 from quintet.components.shared.opencl.program import Program
 from quintet.components.shared.opencl.types import LANES
@@ -15,38 +17,67 @@ PATCH = (0.0,) * boundaries.PATCH_COLUMNS
 SOURCES = ("rows", "lanes", "gradients", "fluxes", "boundaries", "stages")
 
 
-def gas_program(
-    limiter: Limiter, planar: bool, sloped: bool, viscous: bool, lanes: int, by_rows: bool
-) -> str:
+class Physics(NamedTuple):
+    """Physics that a scene may leave out; what is left out is not printed."""
+
+    planar: bool  # whether y is left out
+    sloped: bool  # whether the scheme is of second order
+    viscous: bool = False
+    slides: bool = False  # whether a rarefied gas slides along walls
+    moves: bool = False  # whether bodies carry clouds
+    has_axis: bool = False  # whether these lie about an axis of symmetry
+
+
+def physics_of(params: MeshlessGasParams) -> Physics:
+    """Physics that parameters ask for."""
+    walls, moving = params.boundaries.values(), params.moving
+    return Physics(
+        planar=params.planar,
+        sloped=params.order == 2,
+        viscous=params.viscous,
+        slides=any(wall.accommodation is not None for wall in walls),
+        moves=moving is not None,
+        has_axis=moving is not None and moving.axisymmetric,
+    )
+
+
+def gas_program(limiter: Limiter, physics: Physics, lanes: int, by_rows: bool) -> str:
     """Print the laws and loops of a gas.
 
     Parameters
     ----------
     limiter : Limiter
-    planar : bool
-        Whether y is left out.
-    sloped : bool
-        Whether the scheme is of second order.
-    viscous : bool
+    physics : Physics
     lanes : int
         Nodes whose fluxes are computed side by side.
     by_rows : bool
         How tables are stored, as in `Tables`.
     """
     program = Program("double", lanes)
+    macros = {"PLANAR": physics.planar, "SLOPED": physics.sloped, "MOVING": physics.moves,
+              "RAREFIED": physics.slides}  # fmt: skip
     names = [
         f"#define GROUP {GROUP}", f"#define LANES {lanes}", f"#define BY_ROWS {int(by_rows)}",
         f"#define BACK_PRESSURE {boundaries.BACK_PRESSURE}",
-        *(["#define PLANAR"] if planar else []), *(["#define SLOPED"] if sloped else []),
+        *(f"#define {name}" for name, is_on in macros.items() if is_on),
         *_structs(program, limiter), *_laws(program, limiter),
     ]  # fmt: skip
     sources = [*SOURCES]
-    if viscous:
+    if physics.viscous:
         # Left out of scenes without friction.
         from quintet.components.meshless_gas.opencl.friction_program import friction_laws
 
-        names += friction_laws(program)
-        sources.append("friction")
+        names += friction_laws(program, physics.slides)
+        sources += ["friction", "tractions", *(["slip"] if physics.slides else []), "wall_flows"]
+    if physics.moves:
+        # Left out of scenes without bodies that carry clouds.
+        from quintet.components.meshless_gas.opencl.bodies_program import (
+            bodies_laws,
+            bodies_sources,
+        )
+
+        names += bodies_laws(program, physics.viscous, physics.has_axis)
+        sources += bodies_sources(physics.viscous, physics.has_axis)
     texts = [(HERE / f"{name}.cl").read_text() for name in sources]
     return "\n".join([program.text, *names, *texts])
 

@@ -32,6 +32,24 @@ static Vector vector_at(__global const double *table, int i, int count)
     return vector;
 }
 
+/* Velocities of nodes, where some move: a last argument of kernels, and that of a node. */
+#ifdef MOVING
+#define OF_MOTION , __global const double *frame
+#define FRAME_OF(i) vector_at(frame, i, whole)
+#else
+#define OF_MOTION
+#define FRAME_OF(i) {0, 0, 0}
+#endif
+
+/* What a rarefied gas needs at walls: last arguments of a kernel. */
+#ifdef RAREFIED
+#define OF_SLIDING \
+    , int width, __global const int *neighbours, __global const double *coefficients, \
+        __global const double *lengths, double curvature
+#else
+#define OF_SLIDING
+#endif
+
 /* Sums, or least numbers, of a group of work items, always in the same order. */
 static void add_in_group(__local double *values)
 {

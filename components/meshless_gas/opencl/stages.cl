@@ -55,7 +55,7 @@ __kernel void write_bounds(
     int count, int whole, int width, __global const int *rows, __global const double *primitive,
     __global const double *sound, __global const int *neighbours,
     __global const double *coefficients, __global double *bounds, int first,
-    __global double *parts)
+    __global double *parts OF_MOTION)
 {
     const int row = get_global_id(0), item = get_local_id(0);
     __local double least[GROUP];
@@ -63,13 +63,15 @@ __kernel void write_bounds(
     if (row < count) {
         const int i = rows[row];
         const State a = state_at(primitive, i, whole);
-        const Vector velocity_i = {a.f1, a.f2, a.f3};
+        const Vector frame_i = FRAME_OF(i);
+        const Vector velocity_i = {a.f1 - frame_i.f0, a.f2 - frame_i.f1, a.f3 - frame_i.f2};
         double summed = 0;
         for (int k = 0; k < width; k++) {
             const int j = neighbours[AT(i, k, width, whole)];
             const Vector velocity_j = {
-                primitive[AT(j, 1, 5, whole)], primitive[AT(j, 2, 5, whole)],
-                primitive[AT(j, 3, 5, whole)]};
+                primitive[AT(j, 1, 5, whole)] - frame_i.f0,
+                primitive[AT(j, 2, 5, whole)] - frame_i.f1,
+                primitive[AT(j, 3, 5, whole)] - frame_i.f2};
             const double3 c = coefficient_at(coefficients, i, k, width, whole);
             const Vector coefficient = {c.x, c.y, c.z};
             summed += crossing_rate(velocity_i, velocity_j, coefficient, sound[i], sound[j]);

@@ -1,6 +1,6 @@
-"""Steps of a gas on a device: fluxes over a fixed cloud, boundaries, stages of SSP-RK3."""
+"""Steps of a gas on a device: fluxes over a cloud, boundaries, stages of SSP-RK3."""
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -8,22 +8,22 @@ from quintet.components.meshless_gas.build import Domain
 from quintet.components.meshless_gas.kernels.motion import STAGES
 from quintet.components.meshless_gas.laws.limiters import limiter_of
 from quintet.components.meshless_gas.opencl.device_state import DeviceState, groups
+from quintet.components.meshless_gas.opencl.parts import DevicePart
 from quintet.components.meshless_gas.params import MeshlessGasParams
-from quintet.components.meshless_gas.parts import Inviscid, Stage, WallFriction
+from quintet.components.meshless_gas.parts import Stage
 from quintet.components.shared.opencl.arrays import DeviceArray
 from quintet.components.shared.opencl.devices import Device
 from quintet.components.shared.opencl.types import bytes_of
 from quintet.interfaces.component import Array
 
-if TYPE_CHECKING:
-    from quintet.components.meshless_gas.opencl.friction import DeviceFriction
-    from quintet.components.meshless_gas.opencl.particles import DeviceParticles
+MOMENTS = len(STAGES) + 1  # at which boundaries are written: at the step's begin, after each stage
 
 
 class Outcome(NamedTuple):
     """Results of a step."""
 
-    flows: Array  # (3, 5) kg/s, N, W, through the boundary after each stage
+    # Through the boundary at the step's begin, if nodes move, and after each stage.
+    flows: Array  # (4, 5) kg/s, N, W
     shortest: float  # s, stable for all nodes at a Courant number of 1
     change: float  # 1, root mean square of the densities' relative change
     wrong: int  # row, among nodes that are advanced, whose state is not positive and finite; or -1
@@ -39,14 +39,11 @@ class Stepping:
     threads : int
         Of the processor, where it is the device.
     domain : Domain
-    friction : WallFriction
-        Friction of the host's gas.
     """
 
     def __init__(
-        self, params: MeshlessGasParams, device: Device, threads: int, domain: Domain,
-        friction: WallFriction,
-    ) -> None:  # fmt: skip
+        self, params: MeshlessGasParams, device: Device, threads: int, domain: Domain
+    ) -> None:
         self.state = state = DeviceState(params, device, threads, domain)
         self.cloud, self.run = state.cloud, state.run
         self._limiter = bytes_of(limiter_of(params.limiter, params.limiter_threshold), np.float64)
@@ -55,22 +52,22 @@ class Stepping:
         self.local_steps = params.local_steps
         # Sums and least numbers of groups: flows after each stage, stable steps, changes.
         self._flow_groups = groups(self.cloud.bounding.shape[0])
-        self._node_groups = groups(self.cloud.inner.shape[0])
-        size = 5 * len(STAGES) * self._flow_groups + 2 * self._node_groups
+        self._node_groups = groups(self.cloud.nodes)
+        size = 5 * MOMENTS * self._flow_groups + 2 * self._node_groups
         self._parts = DeviceArray(state.queue, (size,))
-        self.friction = device_friction(friction, state)
-        self.particles: DeviceParticles | None = None
+        self.moves = params.moving is not None
+        self.parts: list[DevicePart] = []  # in the order of their terms
 
     @property
     def first_least(self) -> int:
         """Where, among the numbers of groups, the least stable steps begin."""
-        return 5 * len(STAGES) * self._flow_groups
+        return 5 * MOMENTS * self._flow_groups
 
     def put(self, primitive: Array, conservative: Array) -> Outcome:
         """Copy states (m, 5) of nodes and ghosts and (n, 5) of nodes; compute all that follows."""
         self.state.put(primitive, conservative)
         self._parts.put(np.zeros(self._parts.shape))
-        self._apply_boundaries(len(STAGES) - 1)
+        self._apply_boundaries(len(STAGES))
         self._find_stable_steps()
         return self._outcome()
 
@@ -79,7 +76,11 @@ class Stepping:
         state, cloud, inner = self.state, self.cloud, self.cloud.inner
         sizes = np.int32(inner.shape[0]), np.int32(cloud.nodes), np.int32(cloud.whole)
         local = np.float64(shortest if self.local_steps else 0.0)
+        if self.moves:
+            self._apply_boundaries(0)
         for number, (old, new, weight) in enumerate(STAGES):
+            for part in self.parts:
+                part.place(number, dt)
             self._write_rates(dt, (old, new, weight))
             shares = map(np.float64, (dt, local, old, new))
             self.run(
@@ -92,7 +93,9 @@ class Stepping:
                 *sizes[1:], np.int32(number), cloud.mirrored, cloud.normals, state.wrong,
                 state.conservative, state.primitive,
             )  # fmt: skip
-            self._apply_boundaries(number)
+            self._apply_boundaries(number + 1)
+        for part in self.parts:
+            part.end(dt)
         self._find_stable_steps()
         return self._outcome()
 
@@ -109,18 +112,18 @@ class Stepping:
             "write_ghost_gradients", cloud.ghosts, nodes, whole, cloud.owner, cloud.turn,
             state.gradients, state.lowest,
         )  # fmt: skip
+        for part in self.parts:
+            part.flatten()
         self.run(
             "write_residuals", -(-inner.shape[0] // state.lanes), np.int32(inner.shape[0]), nodes,
             whole, width, inner, cloud.positions, state.primitive, state.gradients, state.lowest,
-            *stencils, self._gamma, self._limiter, state.residual,
+            *stencils, self._gamma, self._limiter, state.residual, *state.frame,
         )  # fmt: skip
-        if self.friction:
-            self.friction.add_rates()
-        if self.particles:
-            self.particles.add_rates(dt, stage)
+        for part in self.parts:
+            part.add_rates(dt, stage)
 
-    def _apply_boundaries(self, stage: int) -> None:
-        """Write the states of boundary nodes and ghosts; sum what enters after a stage."""
+    def _apply_boundaries(self, moment: int) -> None:
+        """Write the states of boundary nodes and ghosts; sum what enters at a moment of a step."""
         state, cloud, edges, gamma = self.state, self.cloud, self.cloud.edges, self._gamma
         whole, width = np.int32(cloud.whole), np.int32(cloud.width)
         self.run(
@@ -134,19 +137,19 @@ class Stepping:
             np.int32(near.shape[1]), leaving, near, cloud.planes, cloud.positions, cloud.patch,
             cloud.patches, cloud.normals, gamma, state.primitive,
         )  # fmt: skip
-        if self.friction:
-            self.friction.write_walls()
+        for part in self.parts:
+            part.write_walls()
         self.run(
             "write_ghosts", cloud.ghosts, np.int32(cloud.nodes), whole, cloud.owner, cloud.turn,
             state.primitive,
         )  # fmt: skip
-        first = np.int32(5 * stage * self._flow_groups)
+        first = np.int32(5 * moment * self._flow_groups)
         self.run(
             "sum_flows", cloud.bounding.shape[0], np.int32(cloud.bounding.shape[0]), whole,
             cloud.bounding, cloud.areas, state.primitive, gamma, first, self._parts,
         )  # fmt: skip
-        if self.friction:
-            self.friction.sum_flows(stage)
+        for part in self.parts:
+            part.sum_flows(moment)
 
     def _find_stable_steps(self) -> None:
         """Find the stable step of each node, and how much densities change in it."""
@@ -157,10 +160,10 @@ class Stepping:
         self.run(
             "write_bounds", inner.shape[0], count, whole, np.int32(cloud.width), inner,
             state.primitive, state.sound, cloud.neighbours, cloud.coefficients, state.bounds, first,
-            self._parts,
+            self._parts, *state.frame,
         )  # fmt: skip
-        if self.friction:
-            self.friction.shorten(first, self._parts)
+        for part in self.parts:
+            part.shorten(first, self._parts)
         self.run(
             "sum_changes", inner.shape[0], count, np.int32(cloud.nodes), inner, state.residual,
             state.bounds, state.conservative, np.int32(first + self._node_groups), self._parts,
@@ -169,24 +172,13 @@ class Stepping:
     def _outcome(self) -> Outcome:
         """Read the numbers of groups, and join them in their order."""
         first, parts, wrong = self.first_least, self._parts.get(), self.state.wrong.get()
-        flows = parts[:first].reshape(len(STAGES), -1, 5).sum(axis=1)
-        if self.friction:
-            flows += self.friction.flows()
-        least, squares = parts[first:].reshape(2, -1)
-        mean = float(squares.sum()) / self.cloud.inner.shape[0]
+        flows = parts[:first].reshape(MOMENTS, -1, 5).sum(axis=1)
+        for part in self.parts:
+            flows += part.flows()
+        advanced = self.cloud.inner.shape[0]
+        least, squares = parts[first:].reshape(2, -1)[:, : groups(advanced)]
+        mean = float(squares.sum()) / advanced
         failed = wrong[wrong >= 0]
         return Outcome(
             flows, float(least.min()), float(np.sqrt(mean)), int(failed[0]) if len(failed) else -1
         )
-
-
-def device_friction(friction: WallFriction, state: DeviceState) -> "DeviceFriction | None":
-    """Viscosity and heat conduction on a device."""
-    if isinstance(friction, Inviscid):
-        return None
-    # Left out of scenes without friction.
-    from quintet.components.meshless_gas.opencl.friction import DeviceFriction
-    from quintet.components.meshless_gas.viscous.terms import Viscous
-
-    assert isinstance(friction, Viscous)
-    return DeviceFriction(friction, state)

@@ -1,31 +1,28 @@
-"""Slip walls of bodies by a Riemann problem at the wall, and what they are loaded with."""
+"""Walls of bodies, and what they are loaded with."""
 
-import math
 from typing import Any
 
-import numpy as np
 from numba import njit
 
-from quintet.components.meshless_gas.laws.fluxes import SENSED, WIDTH, wall_pressure
+from quintet.components.meshless_gas.kernels.outflows import five
+from quintet.components.meshless_gas.moving.laws import slip_wall_state
 from quintet.components.shared.numba_options import EXACT
 
 # Columns of loads (b, 8) on bodies.
 FORCE, TORQUE = slice(0, 3), slice(3, 6)  # N, N m
 POWER, HEAT = 6, 7  # W of the walls on the gas, W into the body
-LEAST = 0.3  # of the first node's density and pressure: what a wall's state must keep
 
 
 @njit(**EXACT)
 def write_slip_walls(
     rows: Any, above: Any, heights: Any, normals: Any, velocity: Any, gamma: float, primitive: Any
 ) -> None:
-    """Write the states of slip walls: what the two nodes above each say of the wall, stopped there.
-
-    The state is extrapolated to the wall, so that what runs into it fades with the square of the
-    height in a settled flow, and the pressure of the shock that stops it needs no threshold.
+    """Write the states of slip walls; see `slip_wall_state`.
 
     Parameters
     ----------
+    above : (w, 2)
+        Nodes above the walls.
     heights : (w, 2) m
         Of those nodes.
     normals : (w, 3) 1
@@ -33,26 +30,14 @@ def write_slip_walls(
     primitive : (n, 5)
         The rows are written.
     """
-    state = np.empty(5)
     for n in range(rows.shape[0]):
-        i, j, k = rows[n], above[n, 0], above[n, 1]
-        ratio = min(primitive[j, 4], primitive[k, 4]) / max(primitive[j, 4], primitive[k, 4])
-        keep = min(max((ratio - SENSED) / WIDTH, 0.0), 1.0)
-        share = keep * heights[n, 0] / (heights[n, 1] - heights[n, 0])
+        first, second = five(primitive[above[n, 0]]), five(primitive[above[n, 1]])
+        normal = (normals[n, 0], normals[n, 1], normals[n, 2])
+        of_wall = (velocity[n, 0], velocity[n, 1], velocity[n, 2])
+        near, far = heights[n, 0], heights[n, 1]
+        state = slip_wall_state(first, second, near, far, normal, of_wall, gamma)
         for q in range(5):
-            state[q] = primitive[j, q] + share * (primitive[j, q] - primitive[k, q])
-        if not (state[0] > LEAST * primitive[j, 0] and state[4] > LEAST * primitive[j, 4]):
-            state[:] = primitive[j]
-        into = 0.0
-        for d in range(3):
-            into -= (state[1 + d] - velocity[n, d]) * normals[n, d]
-        for d in range(3):
-            state[1 + d] += into * normals[n, d]
-        mach = into / math.sqrt(gamma * state[4] / state[0])
-        pressure = wall_pressure(state[4], max(mach, 0.0), gamma)
-        primitive[i, 0] = state[0] * (pressure / state[4]) ** (1.0 / gamma)
-        primitive[i, 1], primitive[i, 2], primitive[i, 3] = state[1], state[2], state[3]
-        primitive[i, 4] = pressure
+            primitive[rows[n], q] = state[q]
 
 
 @njit(**EXACT)
