@@ -37,4 +37,5 @@ MANIFEST = Manifest(
     bench="quintet.components.meshless_gas.bench:cases",
     conform="quintet.components.meshless_gas.conform:cases",
     opencl="quintet.components.meshless_gas.opencl.device_gas:DeviceGas",
+    opencl_ranks="quintet.components.meshless_gas.ranks.refusal:refuse_what_needs_one_device",
 )

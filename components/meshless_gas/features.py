@@ -31,11 +31,21 @@ def ranks(params: MeshlessGasParams, resources: Resources) -> Ranks:
         # Only a gas of several ranks loads mpi4py.
         from quintet.components.meshless_gas.ranks.whole_cloud import WholeCloud
 
-        return WholeCloud(communicator)
+        return WholeCloud(communicator, grain(resources))
     # Only a gas of several ranks loads mpi4py.
     from quintet.components.meshless_gas.ranks.divided_nodes import DividedNodes
 
-    return DividedNodes(communicator)
+    return DividedNodes(communicator, grain(resources))
+
+
+def grain(resources: Resources) -> int:
+    """Nodes of which a rank owns whole multiples: as many as a device adds up together."""
+    if resources.device == "cpu":
+        return 1
+    # Loads no pyopencl, and only a gas on devices asks for it.
+    from quintet.components.shared.opencl.arrays import GROUP
+
+    return GROUP
 
 
 def node_motion(params: MeshlessGasParams, team: Team) -> NodeMotion:

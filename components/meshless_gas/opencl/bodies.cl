@@ -68,14 +68,3 @@ __kernel void write_slip_walls(
         vector_at(normals, rows[n], whole), vector_at(velocities, n, count), gamma);
     store_state(state, primitive, rows[n], whole);
 }
-
-/* States of walls, and of nodes above them, from which the host computes loads on bodies. */
-__kernel void keep_states(
-    int count, int whole, int moment, __global const int *rows,
-    __global const double *primitive, __global double *states)
-{
-    const int row = get_global_id(0);
-    if (row >= count) return;
-    for (int q = 0; q < 5; q++)
-        states[5 * (moment * (size_t)count + row) + q] = primitive[AT(rows[row], q, 5, whole)];
-}

@@ -16,6 +16,7 @@ from quintet.components.meshless_gas.opencl.changed_rows import ChangedRows
 from quintet.components.meshless_gas.opencl.device_cloud import INDEX
 from quintet.components.meshless_gas.opencl.device_state import DeviceState
 from quintet.components.meshless_gas.opencl.parts import DevicePart
+from quintet.components.meshless_gas.ranks.one import Ranks
 from quintet.components.shared.opencl.arrays import DeviceArray
 from quintet.interfaces.component import Array
 
@@ -30,12 +31,15 @@ class DeviceBodies(DevicePart):
     ----------
     motion : MovingClouds
         Clouds of the host's gas.
+    ranks : Ranks
+        That share out the nodes.
     state : DeviceState
         States of the gas on the device.
     """
 
-    def __init__(self, motion: MovingClouds, state: DeviceState) -> None:
+    def __init__(self, motion: MovingClouds, ranks: Ranks, state: DeviceState) -> None:
         self.motion, self.state, self.changed = motion, state, ChangedRows(state)
+        self.ranks, self._advanced = ranks, ranks.share(motion.domain).inner
         layout, tables, queue = motion.layout, state.tables, state.queue
         self._gamma = np.float64(motion.gamma)
 
@@ -62,7 +66,9 @@ class DeviceBodies(DevicePart):
 
     def put(self) -> None:
         """Copy the clouds as they are on the host."""
-        self.state.cloud.put(self.motion.domain)
+        domain = self.ranks.share(self.motion.domain)
+        self.state.cloud.put(domain)
+        self._advanced = domain.inner
         self._put_poses()
         self._put_across()
 
@@ -84,8 +90,11 @@ class DeviceBodies(DevicePart):
         cloud, domain, rows = self.state.cloud, self.motion.domain, self.motion.fringe.written
         self.changed.put(cloud.neighbours, rows, domain.stencils.neighbours[rows])
         self.changed.put(self.state.primitive, fresh, primitive[fresh])
-        self.changed.put(self.state.conservative, fresh, conservative[fresh])
-        cloud.put_rows(domain)
+        advanced = self.ranks.share(domain).inner
+        taken = np.union1d(fresh, np.setdiff1d(advanced, self._advanced))  # from other ranks, too
+        self.changed.put(self.state.conservative, taken, conservative[taken])
+        self._advanced = advanced
+        cloud.put_rows(self.ranks.share(domain))
         if self.motion.layout.is_cut.any():
             self.state.tables.put(cloud.areas, domain.cloud.areas)
         self._put_across()
@@ -135,10 +144,10 @@ class DeviceBodies(DevicePart):
     def sum_flows(self, moment: int) -> None:
         """Keep the states of walls at a moment of the step."""
         count = self._rows.shape[0]
+        sizes = map(np.int32, (count, 5, self._whole, 5 * count * moment))
         self.state.run(
-            "keep_states", count, np.int32(count), self._whole, np.int32(moment), self._rows,
-            self.state.primitive, self._states,
-        )  # fmt: skip
+            "read_rows", 5 * count, *sizes, self._rows, self.state.primitive, self._states
+        )
 
     def states_at_walls(self) -> tuple[Rows, Array]:
         """Nodes (m,) from which loads are computed, and states (4, m, 5) of the moments."""

@@ -12,7 +12,7 @@ VECTOR, STATE, STATES = (0.0,) * 3, (0.0,) * 5, (LANES,) * 5
 def bodies_sources(is_viscous: bool, has_axis: bool) -> list[str]:
     """Names of files with loops."""
     return [
-        "changed_rows", "bodies", *(["held_bodies"] if is_viscous else []),
+        "bodies", *(["held_bodies"] if is_viscous else []),
         *(["axis"] if has_axis else []), *(["axis_stresses"] if has_axis and is_viscous else []),
     ]  # fmt: skip
 

@@ -7,27 +7,34 @@ each stage copies the states. So do bodies that carry clouds: it moves them, and
 on them from the states at their walls.
 """
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from quintet.components.meshless_gas import MANIFEST
 from quintet.components.meshless_gas.component import MeshlessGas
 from quintet.components.meshless_gas.diagnostics import step_error
 from quintet.components.meshless_gas.kernels.motion import STAGES
-from quintet.components.meshless_gas.opencl.features import bodies_of, particles_of, terms
+from quintet.components.meshless_gas.opencl.features import (
+    bodies_of,
+    is_alone,
+    particles_of,
+    terms,
+)
 from quintet.components.meshless_gas.opencl.stepping import Outcome, Stepping
 from quintet.components.meshless_gas.params import MeshlessGasParams
 from quintet.components.meshless_gas.ports import SHOWS
 from quintet.components.shared.opencl.device_component import DeviceComponent
-from quintet.components.shared.opencl.devices import device_of, require_doubles
+from quintet.components.shared.opencl.devices import require_doubles
+from quintet.components.shared.opencl.ranks import device_and_queue
 from quintet.interfaces.component import Array, Fields, Resources
 
 if TYPE_CHECKING:
     from quintet.components.meshless_gas.opencl.bodies import DeviceBodies
 
 FIRST_DEVICE = Resources(device="opencl")
+CODE = 2**40  # more than there are nodes
 
 
 class DeviceGas(DeviceComponent):
@@ -39,14 +46,15 @@ class DeviceGas(DeviceComponent):
     host: MeshlessGas
 
     def __init__(self, params: MeshlessGasParams, resources: Resources = FIRST_DEVICE) -> None:
-        device = device_of(resources.device)
+        device, queue = device_and_queue(resources)  # before any other use of OpenCL
         require_doubles(device, resources.device)
         self.params, (self.takes, self.gives) = params, self.ports_of(params)
-        self.host = MeshlessGas(params, replace(resources, device="cpu"))
-        self._particles = particles_of(self.host)
-        self.stepping = Stepping(params, device, resources.threads, self.host.motion.domain)
-        self.stepping.parts = terms(self.host, self.stepping.state, resources.device)
-        self._bodies = bodies_of(self.host, self.stepping.parts)
+        self.host = host = MeshlessGas(params, resources)
+        self._particles = particles_of(host)
+        domain, is_shared = host.all_ranks.share(host.motion.domain), not is_alone(host)
+        self.stepping = Stepping(params, device, queue, domain, is_shared)
+        self.stepping.parts = terms(host, self.stepping.state, resources.device)
+        self._bodies = bodies_of(host, self.stepping.parts)
         self._put()
 
     def prime(self, fields: Fields) -> None:
@@ -72,13 +80,7 @@ class DeviceGas(DeviceComponent):
             self._begin(bodies, dt)
         self._is_read = False
         outcome = self.stepping.step(dt, host.scheme.shortest_step)
-        if outcome.wrong >= 0:
-            self._get()
-            share = dt / host.scheme.shortest_step
-            raise step_error(
-                [outcome.wrong], host.motion.domain, host.fluxes.primitive, host.state.time, share,
-                host.params.planar, host.team, host.all_ranks,
-            )  # fmt: skip
+        self._refuse_failure(dt, outcome.wrong)
         if not self._bodies:  # boundaries are as they were after the last step
             outcome.flows[0] = host.fluxes.flows
         self._count(dt, outcome.flows)
@@ -86,10 +88,33 @@ class DeviceGas(DeviceComponent):
             state.entered -= dt * part.loss_rates()
         state.time += dt
         self._follow(outcome)
-        state.change = outcome.change
+        state.change = density_change(outcome.squares, host)
         if host.monitor.looks_next:
             self._get()
         host.monitor.update(host.fluxes.primitive, state.change, state.time)
+
+    def _refuse_failure(self, dt: float, wrong: NDArray[np.int32]) -> None:
+        """Raise where a stage of a step of dt [s] failed; see `Outcome` for its rows."""
+        host, ranks, domain = self.host, self.host.all_ranks, self.host.motion.domain
+        first, stages = ranks.first(domain), len(wrong)
+        # Of the earliest stage the last of all rows.
+        codes = [
+            (stages - stage) * CODE + first + row
+            for stage, row in enumerate(wrong.tolist())
+            if row >= 0
+        ]
+        failed = ranks.greatest(max(codes, default=-1))
+        if failed < 0:
+            return
+        stage, mine = stages - int(failed // CODE), list[int]()
+        if failed in codes:
+            mine.append(int(wrong[stage]))
+        self._get()
+        share = dt / host.scheme.shortest_step
+        raise step_error(
+            mine, domain, host.fluxes.primitive, host.state.time, share, host.params.planar,
+            host.team, ranks,
+        )  # fmt: skip
 
     def _begin(self, bodies: "DeviceBodies", dt: float) -> None:
         """Let the host move bodies to the start of a step of dt [s], and the device follow."""
@@ -122,7 +147,8 @@ class DeviceGas(DeviceComponent):
     def _follow(self, outcome: Outcome) -> None:
         """Let the host have the flows and the stable step of the states as they are."""
         self.host.fluxes.flows[:] = outcome.flows[-1]
-        self.host.scheme.accept(outcome.shortest, self.host.state.time)
+        shortest = self.host.all_ranks.least(outcome.shortest)
+        self.host.scheme.accept(shortest, self.host.state.time)
 
     def _put(self) -> None:
         """Copy the host's state to the device."""
@@ -137,6 +163,7 @@ class DeviceGas(DeviceComponent):
         """Copy the states into the host's arrays; find loads on walls."""
         host, domain = self.host, self.host.motion.domain
         self.stepping.state.get(host.fluxes.primitive, host.state.conservative)
+        host.all_ranks.exchange_conserved(domain, host.state.conservative)
         for part in (host.friction, host.motion):
             part.add_flows(domain, host.fluxes.primitive, np.zeros(5))
 
@@ -144,3 +171,9 @@ class DeviceGas(DeviceComponent):
         """Doubts about the cloud and the order, and about inflows at which waves have arrived."""
         self._get()
         return self.host.warnings()
+
+
+def density_change(squares: Array, gas: MeshlessGas) -> float:
+    """Root mean square of the densities' relative change, by squares of this rank's groups."""
+    ranks, domain = gas.all_ranks, gas.motion.domain
+    return float(np.sqrt(float(ranks.from_owner(squares).sum()) / ranks.advanced(domain)))

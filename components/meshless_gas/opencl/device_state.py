@@ -25,19 +25,22 @@ class DeviceState:
     ----------
     params : MeshlessGasParams
     device : Device
-    threads : int
-        Of the processor, where it is the device.
+    queue : pyopencl.CommandQueue
     domain : Domain
+        That this rank computes.
+    is_shared : bool
+        Whether several ranks share the nodes out.
     """
 
     def __init__(
-        self, params: MeshlessGasParams, device: Device, threads: int, domain: Domain
-    ) -> None:
-        self.queue = device.queue(threads)
+        self, params: MeshlessGasParams, device: Device, queue: Any, domain: Domain,
+        is_shared: bool,
+    ) -> None:  # fmt: skip
+        self.queue = queue
         self.tables = Tables(self.queue, device.is_processor)
         self.lanes = LANES_OF_PROCESSORS if device.is_processor else 1
         limiter = limiter_of(params.limiter, params.limiter_threshold)
-        text = gas_program(limiter, physics_of(params), self.lanes, self.tables.by_rows)
+        text = gas_program(limiter, physics_of(params, is_shared), self.lanes, self.tables.by_rows)
         # A kernel is made once: pyopencl makes another at each look.
         kernels = build(self.queue, text).all_kernels()
         self._kernels = {kernel.function_name: kernel for kernel in kernels}

@@ -26,14 +26,27 @@ def terms(gas: MeshlessGas, state: DeviceState, device: str) -> list[DevicePart]
         Of parts that only a step on the processor calls.
     """
     names = [type(part).__name__ for part in gas.parts]
-    unknown = [name for name in names if name not in {*MAKERS, *ABSENT}]
-    unknown += [] if isinstance(gas.all_ranks, OneRank) else [type(gas.all_ranks).__name__]
-    refuse_parts(unknown, device, "a gas")
+    refuse_parts([name for name in names if name not in {*MAKERS, *ABSENT}], device, "a gas")
     parts: list[DevicePart] = []
     for name, part in zip(names, gas.parts, strict=True):
         if name in MAKERS:
             parts.append(MAKERS[name](part, gas, state, parts))
-    return parts
+    return parts + ranks(gas, state)
+
+
+def ranks(gas: MeshlessGas, state: DeviceState) -> list[DevicePart]:
+    """Exchange between ranks, which comes after all else."""
+    if is_alone(gas):
+        return []
+    # Left out of a gas of one rank.
+    from quintet.components.meshless_gas.opencl.ranks import DeviceRanks
+
+    return [DeviceRanks(gas, state)]
+
+
+def is_alone(gas: MeshlessGas) -> bool:
+    """Whether a gas has one rank."""
+    return type(gas.all_ranks) is OneRank
 
 
 def particles_of(gas: MeshlessGas) -> "list[CoupledParticles]":
@@ -69,7 +82,7 @@ def bodies(part: Any, gas: MeshlessGas, state: DeviceState, before: Any) -> Devi
     # Left out of scenes without such bodies.
     from quintet.components.meshless_gas.opencl.bodies import DeviceBodies
 
-    return DeviceBodies(part, state)
+    return DeviceBodies(part, gas.all_ranks, state)
 
 
 def axis(part: Any, gas: MeshlessGas, state: DeviceState, before: Any) -> DevicePart:

@@ -19,6 +19,9 @@ class DevicePart:
     def add_rates(self, dt: float, stage: Stage) -> None:
         """Add rates of density, momentum and energy in a stage of a step of dt [s]."""
 
+    def finish_stage(self) -> None:
+        """Bring the states of nodes that other ranks advanced."""
+
     def write_walls(self) -> None:
         """Write the states of wall nodes."""
 

@@ -26,10 +26,11 @@ class Physics(NamedTuple):
     slides: bool = False  # whether a rarefied gas slides along walls
     moves: bool = False  # whether bodies carry clouds
     has_axis: bool = False  # whether these lie about an axis of symmetry
+    is_shared: bool = False  # whether several ranks share the nodes out
 
 
-def physics_of(params: MeshlessGasParams) -> Physics:
-    """Physics that parameters ask for."""
+def physics_of(params: MeshlessGasParams, is_shared: bool) -> Physics:
+    """Physics that parameters ask for, of a gas that ranks share out or not."""
     walls, moving = params.boundaries.values(), params.moving
     return Physics(
         planar=params.planar,
@@ -38,6 +39,7 @@ def physics_of(params: MeshlessGasParams) -> Physics:
         slides=any(wall.accommodation is not None for wall in walls),
         moves=moving is not None,
         has_axis=moving is not None and moving.axisymmetric,
+        is_shared=is_shared,
     )
 
 
@@ -78,6 +80,8 @@ def gas_program(limiter: Limiter, physics: Physics, lanes: int, by_rows: bool) -
 
         names += bodies_laws(program, physics.viscous, physics.has_axis)
         sources += bodies_sources(physics.viscous, physics.has_axis)
+    if physics.moves or physics.is_shared:
+        sources.append("changed_rows")
     texts = [(HERE / f"{name}.cl").read_text() for name in sources]
     return "\n".join([program.text, *names, *texts])
 

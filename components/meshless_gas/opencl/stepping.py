@@ -1,6 +1,6 @@
 """Steps of a gas on a device: fluxes over a cloud, boundaries, stages of SSP-RK3."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -24,9 +24,10 @@ class Outcome(NamedTuple):
 
     # Through the boundary at the step's begin, if nodes move, and after each stage.
     flows: Array  # (4, 5) kg/s, N, W
-    shortest: float  # s, stable for all nodes at a Courant number of 1
-    change: float  # 1, root mean square of the densities' relative change
-    wrong: int  # row, among nodes that are advanced, whose state is not positive and finite; or -1
+    shortest: float  # s, stable for all nodes of this rank at a Courant number of 1
+    squares: Array  # (g,) 1, of the densities' relative change, summed over groups of nodes
+    # Of each stage: row, among nodes that are advanced here, of a state that is none; or -1.
+    wrong: Array  # (3,)
 
 
 class Stepping:
@@ -36,15 +37,18 @@ class Stepping:
     ----------
     params : MeshlessGasParams
     device : Device
-    threads : int
-        Of the processor, where it is the device.
+    queue : pyopencl.CommandQueue
     domain : Domain
+        That this rank computes.
+    is_shared : bool
+        Whether several ranks share the nodes out.
     """
 
     def __init__(
-        self, params: MeshlessGasParams, device: Device, threads: int, domain: Domain
-    ) -> None:
-        self.state = state = DeviceState(params, device, threads, domain)
+        self, params: MeshlessGasParams, device: Device, queue: Any, domain: Domain,
+        is_shared: bool,
+    ) -> None:  # fmt: skip
+        self.state = state = DeviceState(params, device, queue, domain, is_shared)
         self.cloud, self.run = state.cloud, state.run
         self._limiter = bytes_of(limiter_of(params.limiter, params.limiter_threshold), np.float64)
         self._gamma = np.float64(params.gas.gamma)
@@ -88,6 +92,8 @@ class Stepping:
                 state.bounds, state.residual, state.start, state.conservative, state.primitive,
                 state.wrong,
             )  # fmt: skip
+            for part in self.parts:
+                part.finish_stage()
             self.run(
                 "hold_along_walls", cloud.mirrored.shape[0], np.int32(cloud.mirrored.shape[0]),
                 *sizes[1:], np.int32(number), cloud.mirrored, cloud.normals, state.wrong,
@@ -177,8 +183,4 @@ class Stepping:
             flows += part.flows()
         advanced = self.cloud.inner.shape[0]
         least, squares = parts[first:].reshape(2, -1)[:, : groups(advanced)]
-        mean = float(squares.sum()) / advanced
-        failed = wrong[wrong >= 0]
-        return Outcome(
-            flows, float(least.min()), float(np.sqrt(mean)), int(failed[0]) if len(failed) else -1
-        )
+        return Outcome(flows, float(least.min()), squares, wrong)

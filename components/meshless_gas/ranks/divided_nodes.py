@@ -9,7 +9,12 @@ from quintet.components.meshless_gas.build import Domain, Rows
 from quintet.components.meshless_gas.parts import NodeMotion, Part
 from quintet.components.meshless_gas.ranks.local_rows import local_rows
 from quintet.components.meshless_gas.ranks.ordered_sums import ordered_sums
-from quintet.components.meshless_gas.ranks.several import SeveralRanks, part_of, shown_parts
+from quintet.components.meshless_gas.ranks.several import (
+    Exchanged,
+    SeveralRanks,
+    part_of,
+    shown_parts,
+)
 from quintet.components.meshless_gas.state import State
 from quintet.components.shared.domain.collection import Collection
 from quintet.components.shared.domain.exchange import send_rows, share
@@ -28,13 +33,16 @@ class DividedNodes(SeveralRanks):
     Parameters
     ----------
     communicator : mpi4py communicator
+    grain : int
+        As of `SeveralRanks`.
     """
 
     def divide(self, motion: NodeMotion, parts: Sequence[Part], state: State) -> None:
         """Keep only what this rank needs of the domain, of the parts and of the state."""
         domain, rank, size = motion.domain, self._communicator.rank, self._communicator.size
-        self._first, last = part_of(len(domain.inner), rank, size)
-        self._advanced, parts_shown = len(domain.inner), shown_parts(domain, size)
+        self._first, last = part_of(len(domain.inner), rank, size, self._grain)
+        self._advanced = len(domain.inner)
+        parts_shown = shown_parts(domain, size, self._grain)
         answered = domain.every[slice(*parts_shown[rank])]
         read = np.concatenate([np.zeros(0, np.int64), *(part.reads() for part in parts)])
         written = domain.bounding
@@ -49,17 +57,17 @@ class DividedNodes(SeveralRanks):
         self._collection = Collection(self._communicator, answered.astype(np.int64))
         self._counts = [end - start for start, end in parts_shown]
         begins = np.array([begin for begin, _ in parts_shown])
-        self._halo = self._exchange_of(domain.inner, local, begins)
+        self._halo, self._exchanged = self._exchange_of(domain.inner, local, begins)
         follow = np.setdiff1d(domain.bounding, domain.inner)
         if len(written) == len(domain.bounding):
             follow = follow[:0]
-        self._boundaries = self._exchange_of(follow, local, begins)
+        self._boundaries, self._exchanged_boundaries = self._exchange_of(follow, local, begins)
         for part in parts:
             part.renumber(local, motion.domain)
         state.conservative = state.conservative[self._held]
         state.primitive = state.primitive[self._held]
 
-    def _exchange_of(self, nodes: Rows, local: Rows, begins: Whole) -> Halo:
+    def _exchange_of(self, nodes: Rows, local: Rows, begins: Whole) -> tuple[Halo, Exchanged]:
         """Ask each rank for those of some nodes that it computes and that this one holds, too."""
         wanted = nodes[local[nodes] >= 0].astype(np.int64)
         owner = np.searchsorted(begins, wanted, side="right") - 1
@@ -68,7 +76,20 @@ class DividedNodes(SeveralRanks):
         requested = send_rows(self._communicator, others)
         sent = [local[rows].astype(np.int64) for rows in requested]
         received = [local[rows].astype(np.int64) for rows in others]
-        return Halo(self._communicator, sent, received, (5,))
+        rows = Exchanged(*(np.concatenate(lists) for lists in (sent, received)))
+        return Halo(self._communicator, sent, received, (5,)), rows
+
+    def exchanged(self, domain: Domain) -> Exchanged:
+        """Rows that `exchange` brings."""
+        return self._exchanged
+
+    def exchanged_boundaries(self) -> Exchanged:
+        """Rows that `exchange_boundaries` brings."""
+        return self._exchanged_boundaries
+
+    def advanced(self, domain: Domain) -> int:
+        """How many nodes all ranks advance."""
+        return self._advanced
 
     def answered(self, domain: Domain) -> slice:
         """Rows of the nodes that this rank answers for."""

@@ -73,6 +73,9 @@ class Ranks(Protocol):
     def in_turn(self, add: Callable[[Array], None], sums: Array) -> None:
         """Let one rank after another add to sums (k,), of which rank 0 then has the last."""
 
+    def advanced(self, domain: Domain) -> int:
+        """How many nodes all ranks advance."""
+
     def first(self, domain: Domain) -> int:
         """Index of this rank's first node in the list of all nodes that are advanced."""
 
@@ -152,6 +155,10 @@ class OneRank:
     def in_turn(self, add: Callable[[Array], None], sums: Array) -> None:
         """Add to sums (k,)."""
         add(sums)
+
+    def advanced(self, domain: Domain) -> int:
+        """How many nodes are advanced."""
+        return len(domain.inner)
 
     def first(self, domain: Domain) -> int:
         """Return the first of all."""

@@ -1,7 +1,8 @@
 """What several ranks do alike, however they share nodes out."""
 
+from abc import ABC, abstractmethod
 from itertools import pairwise
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -15,16 +16,33 @@ from quintet.interfaces.component import Array
 from quintet.interfaces.errors import SceneError
 
 
-class SeveralRanks(OneRank):
+class Exchanged(NamedTuple):
+    """Rows of one rank whose states are exchanged."""
+
+    sent: Rows  # (k,) that others need
+    received: Rows  # (m,) that others compute
+
+
+class SeveralRanks(OneRank, ABC):
     """Ranks that own about as many of the nodes that are advanced, one after another.
 
     Parameters
     ----------
     communicator : mpi4py communicator
+    grain : int
+        Ranks own whole multiples of so many of these nodes, but for the last of them.
     """
 
-    def __init__(self, communicator: Any) -> None:
-        self._communicator = communicator
+    def __init__(self, communicator: Any, grain: int = 1) -> None:
+        self._communicator, self._grain = communicator, grain
+
+    @abstractmethod
+    def exchanged(self, domain: Domain) -> Exchanged:
+        """Rows that `exchange` brings."""
+
+    @abstractmethod
+    def exchanged_boundaries(self) -> Exchanged:
+        """Rows that `exchange_boundaries` brings."""
 
     def room(self, shape: tuple[int, ...]) -> Array:
         """Zeros of a shape, of which rows that are not written take no memory."""
@@ -47,25 +65,30 @@ class SeveralRanks(OneRank):
         return float(greatest(self._communicator, np.array([number]))[0])
 
 
-def part_of(count: int, rank: int, size: int) -> tuple[int, int]:
-    """First and last place of a rank's nodes among as many as are advanced.
+def part_of(count: int, rank: int, size: int, grain: int = 1) -> tuple[int, int]:
+    """First and last place of a rank's nodes among as many as are advanced; see `SeveralRanks`.
 
     Raises
     ------
     SceneError
         If there are fewer nodes than ranks.
     """
-    if count < size:
+    if count < size * grain:
+        owned = "a node that is" if grain == 1 else f"{grain} nodes that are"
         raise SceneError(
-            f"ranks: each must own a node that is advanced; there are {count} for {size} ranks. "
+            f"ranks: each must own {owned} advanced; there are {count} for {size} ranks. "
             "Take fewer ranks."
         )
-    return rank * count // size, (rank + 1) * count // size
+    first, last = (
+        number * count // size // grain * grain if number < size else count
+        for number in (rank, rank + 1)
+    )
+    return first, last
 
 
-def shown_parts(domain: Domain, size: int) -> list[tuple[int, int]]:
+def shown_parts(domain: Domain, size: int, grain: int = 1) -> list[tuple[int, int]]:
     """First and last place of each rank's nodes among all; boundary nodes go with others."""
-    begins = [part_of(len(domain.inner), rank, size)[0] for rank in range(1, size)]
+    begins = [part_of(len(domain.inner), rank, size, grain)[0] for rank in range(1, size)]
     starts: Rows = np.append(domain.inner, len(domain.cloud.positions))[begins]
     cuts = [0, *np.searchsorted(domain.every, starts).tolist(), len(domain.every)]
     return list(pairwise(cuts))

@@ -8,7 +8,12 @@ import numpy as np
 from quintet.components.meshless_gas.build import Domain, Rows
 from quintet.components.meshless_gas.parts import NodeMotion, Part
 from quintet.components.meshless_gas.ranks.part_stencils import needed, part_stencils
-from quintet.components.meshless_gas.ranks.several import SeveralRanks, part_of, shown_parts
+from quintet.components.meshless_gas.ranks.several import (
+    Exchanged,
+    SeveralRanks,
+    part_of,
+    shown_parts,
+)
 from quintet.components.meshless_gas.state import State
 from quintet.components.shared.domain.waiting import wait_for_all
 from quintet.interfaces.component import Array
@@ -20,10 +25,12 @@ class WholeCloud(SeveralRanks):
     Parameters
     ----------
     communicator : mpi4py communicator
+    grain : int
+        As of `SeveralRanks`.
     """
 
-    def __init__(self, communicator: Any) -> None:
-        super().__init__(communicator)
+    def __init__(self, communicator: Any, grain: int = 1) -> None:
+        super().__init__(communicator, grain)
         self._domain: Domain | None = None  # that was shared out
         self._share: Domain | None = None
         self._buffers: dict[int, Array] = {}  # by numbers in a row
@@ -52,7 +59,9 @@ class WholeCloud(SeveralRanks):
 
     def shown(self, domain: Domain) -> Rows:
         """Nodes, of `every`, for which this rank computes what a view shows."""
-        first, last = shown_parts(domain, self._communicator.size)[self._communicator.rank]
+        first, last = shown_parts(domain, self._communicator.size, self._grain)[
+            self._communicator.rank
+        ]
         return domain.every[first:last]
 
     def around_shown(self, domain: Domain) -> tuple[Rows, Rows | None]:
@@ -77,6 +86,17 @@ class WholeCloud(SeveralRanks):
         """Bring the conserved states (n, 5) of all nodes that are advanced."""
         self.exchange(domain, conservative)
 
+    def exchanged(self, domain: Domain) -> Exchanged:
+        """Rows that `exchange` brings."""
+        first, last = self._part(domain, self._communicator.rank)
+        nodes = domain.inner
+        return Exchanged(nodes[first:last], np.concatenate([nodes[:first], nodes[last:]]))
+
+    def exchanged_boundaries(self) -> Exchanged:
+        """Return none: every rank computes all boundary states."""
+        none = np.zeros(0, np.int32)
+        return Exchanged(none, none)
+
     def mean(self, domain: Domain, values: Array) -> float:
         """Mean over all nodes that are advanced; each rank gives values (m,) of its own."""
         return float(self._gathered(domain, values[:, np.newaxis])[:, 0].mean())
@@ -86,7 +106,7 @@ class WholeCloud(SeveralRanks):
         return self._part(domain, self._communicator.rank)[0]
 
     def _part(self, domain: Domain, rank: int) -> tuple[int, int]:
-        return part_of(len(domain.inner), rank, self._communicator.size)
+        return part_of(len(domain.inner), rank, self._communicator.size, self._grain)
 
     def _gathered(self, domain: Domain, rows: Array) -> Array:
         """Rows (m, width) of all ranks, from those of this one."""

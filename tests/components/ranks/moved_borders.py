@@ -19,7 +19,10 @@ def move():
         module.part_of = smaller_parts
 
 
-def smaller_parts(count, rank, size):
+def smaller_parts(count, rank, size, grain=1):
     """First and last place of a rank's nodes, more on the first ranks than on later ones."""
-    first, last = (int(count * (number / size) ** 0.8) for number in (rank, rank + 1))
+    first, last = (
+        int(count * (number / size) ** 0.8) // grain * grain if number < size else count
+        for number in (rank, rank + 1)
+    )
     return first, last
