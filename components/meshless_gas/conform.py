@@ -1,5 +1,6 @@
 """What the laws of the contract are tried on: gas at rest, a stream over a wall, a shock tube."""
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -57,15 +58,18 @@ def cases() -> tuple[ConformCase, ...]:
 
 
 def _on_devices(stream: dict[str, Any]) -> tuple[ConformCase, ...]:
-    """A stream on a device, where there is one."""
-    # Loads pyopencl where it is installed; this case alone asks for it.
+    """A stream and a body on a device, where there is one."""
+    # Loads pyopencl where it is installed; these cases alone ask for it.
     from quintet.components.shared.opencl.devices import is_any_there
 
     if not is_any_there():
         return ()
     name = "stream over a wall, OpenCL"
     step = 0.2 * STEP
-    return (ConformCase(name, stream, dt=step, still=False, smooth=False, device="opencl"),)
+    return (
+        ConformCase(name, stream, dt=step, still=False, smooth=False, device="opencl"),
+        replace(_body(), name="a body in a gas, OpenCL", device="opencl"),
+    )
 
 
 def _dusty() -> ConformCase:

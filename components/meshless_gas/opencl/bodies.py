@@ -39,7 +39,7 @@ class DeviceBodies(DevicePart):
 
     def __init__(self, motion: MovingClouds, ranks: Ranks, state: DeviceState) -> None:
         self.motion, self.state, self.changed = motion, state, ChangedRows(state)
-        self.ranks, self._advanced = ranks, ranks.share(motion.domain).inner
+        self.ranks = ranks
         layout, tables, queue = motion.layout, state.tables, state.queue
         self._gamma = np.float64(motion.gamma)
 
@@ -66,9 +66,8 @@ class DeviceBodies(DevicePart):
 
     def put(self) -> None:
         """Copy the clouds as they are on the host."""
-        domain = self.ranks.share(self.motion.domain)
-        self.state.cloud.put(domain)
-        self._advanced = domain.inner
+        self.state.cloud.put(self.ranks.share(self.motion.domain))
+        self._find_others()
         self._put_poses()
         self._put_across()
 
@@ -90,10 +89,9 @@ class DeviceBodies(DevicePart):
         cloud, domain, rows = self.state.cloud, self.motion.domain, self.motion.fringe.written
         self.changed.put(cloud.neighbours, rows, domain.stencils.neighbours[rows])
         self.changed.put(self.state.primitive, fresh, primitive[fresh])
-        advanced = self.ranks.share(domain).inner
-        taken = np.union1d(fresh, np.setdiff1d(advanced, self._advanced))  # from other ranks, too
-        self.changed.put(self.state.conservative, taken, conservative[taken])
-        self._advanced = advanced
+        changed = np.union1d(fresh, self._others)  # ranks may own others of them from now on
+        self.changed.put(self.state.conservative, changed, conservative[changed])
+        self._find_others()
         cloud.put_rows(self.ranks.share(domain))
         if self.motion.layout.is_cut.any():
             self.state.tables.put(cloud.areas, domain.cloud.areas)
@@ -152,6 +150,11 @@ class DeviceBodies(DevicePart):
     def states_at_walls(self) -> tuple[Rows, Array]:
         """Nodes (m,) from which loads are computed, and states (4, m, 5) of the moments."""
         return self._shown, self._states.get()
+
+    def _find_others(self) -> None:
+        """Find the nodes that other ranks advance: their conserved states are not exchanged."""
+        domain = self.motion.domain
+        self._others = np.setdiff1d(domain.inner, self.ranks.share(domain).inner)
 
     # Geometry
 

@@ -2,6 +2,7 @@
 
 from printed_laws import Between, Law, vector
 
+from quintet.components.meshless_gas.axis import laws as axis
 from quintet.components.meshless_gas.clouds.cloud import INFLOW, OUTFLOW, SLIP
 from quintet.components.meshless_gas.laws import (
     boundaries,
@@ -12,7 +13,9 @@ from quintet.components.meshless_gas.laws import (
     states,
     transport,
 )
+from quintet.components.meshless_gas.moving import laws as moving
 from quintet.components.meshless_gas.viscous import laws as viscous
+from quintet.components.meshless_gas.viscous import slip_laws as slip
 
 ANY, PART, LARGE = Between(-1.0, 1.0), Between(0.01, 1.0), Between(0.5, 2.0)
 AIR = transport.Transport(1.7e-5, 273.0, 110.0, 1400.0, 287.0)
@@ -26,6 +29,10 @@ AT_REST = (*STATE, 0.0, Between(1.0, 3.0), LARGE)
 TWO, SIX, VECTORS = (ANY,) * 2, (ANY,) * 6, (vector(1.0),) * 5
 BETWEEN = (LARGE, ANY, LARGE)
 WALL = (STATE, GIVEN, NORMAL, GAMMA)
+THIN = AIR._replace(gas_constant=1.0 / 300.0)
+SHARES = (Between(-9.0, -2.0), Between(3.0, 9.0), Between(-1.0, -0.1))  # 1/m, of a slope at a wall
+ABOVE = (STATE, STATE, SHARES, vector(0.1), NORMAL)
+LENGTHS = (LARGE, LARGE)
 
 GAS_LAWS = [
     Law(fluxes.smoothness, (PART, PART, PART, PART, PART)),
@@ -98,4 +105,17 @@ GAS_LAWS = [
     Law(viscous.jump_length, (PART, GAMMA, PART)),
     Law(viscous.slope_shares, (PART, LARGE)),
     Law(viscous.mean_free_path, (PART, LARGE, LARGE, 287.0)),
+    Law(slip.extrapolated_slip, (SHARES, STATE, STATE, vector(0.1), NORMAL)),
+    *(
+        Law(slip.temperature_at_wall, (LARGE, *ABOVE, warmth, LENGTHS, PART, THIN), name=name)
+        for name, warmth in (("", Between(200.0, 400.0)), (" that is adiabatic", -1.0))
+    ),
+    Law(slip.velocity_at_wall, (STATE, *ABOVE, vector(9.0), LARGE, PART, THIN)),
+    Law(slip.spread, (vector(1.0), vector(1.0), NORMAL)),
+    Law(slip.slip_traction, (STATE, *ABOVE, ANY, PART, THIN)),
+    Law(moving.slip_wall_state, (STATE, STATE, PART, LARGE, NORMAL, vector(1.0), GAMMA), ulp=2),
+    Law(moving.level_temperature, (LARGE, LARGE, PART, Between(1.1, 2.0))),
+    Law(axis.axis_rates, (LARGE, ANY, ANY, LARGE, PART, GAMMA)),
+    Law(axis.swelling_stress, (ANY, PART, PART)),
+    Law(axis.axis_stresses, (*(ANY,) * 5, PART, PART, ANY, TWO, TWO, ANY)),
 ]  # fmt: skip
