@@ -142,7 +142,7 @@ class DeviceBodies(DevicePart):
     def sum_flows(self, moment: int) -> None:
         """Keep the states of walls at a moment of the step."""
         count = self._rows.shape[0]
-        sizes = map(np.int32, (count, 5, self._whole, 5 * count * moment))
+        sizes = map(np.int32, (count, 5, self.state.cloud.whole, 5 * count * moment))
         self.state.run(
             "read_rows", 5 * count, *sizes, self._rows, self.state.primitive, self._states
         )

@@ -28,8 +28,8 @@ class DeviceCloud:
         self.positions = tables.of(cloud.positions)  # m
         self.normals, self.areas = tables.of(cloud.normals), tables.of(cloud.areas)
         rows = (domain.edges, domain.bounding, domain.mirrored, cloud.kind, cloud.patch)
-        self.edges, self.bounding, self.mirrored, self.kind, self.patch = map(
-            self._whole_numbers, rows
+        self.edges, self.bounding, self.mirrored, self.kind, self.patch = (
+            self._whole_numbers(numbers) for numbers in rows
         )
         self.weights = tables.of(domain.weights)
         self.patches = DeviceArray.of(tables.queue, domain.patches)  # by rows

@@ -37,7 +37,7 @@ def friction_laws(program: Program, slides: bool) -> list[str]:
 def slip_laws(program: Program) -> list[str]:
     """Print the laws of a rarefied gas at walls."""
     # Left out of scenes without accommodation coefficients.
-    from quintet.components.meshless_gas.viscous import slip_laws as slip
+    from quintet.components.meshless_gas.viscous.kernels import slip_laws as slip
 
     number, pair, above = 0.0, (0.0, 0.0), (STATE, STATE, VECTOR, VECTOR, VECTOR)
     return [

@@ -3,13 +3,13 @@
 from numba import njit
 
 from quintet.components.meshless_gas.kernels.outflows import five
-from quintet.components.meshless_gas.viscous.laws import gas_temperature, slope_shares
-from quintet.components.meshless_gas.viscous.slip_laws import (
+from quintet.components.meshless_gas.viscous.kernels.slip_laws import (
     slip_traction,
     spread,
     temperature_at_wall,
     velocity_at_wall,
 )
+from quintet.components.meshless_gas.viscous.laws import gas_temperature, slope_shares
 from quintet.components.shared.numba_options import EXACT, INNER
 
 

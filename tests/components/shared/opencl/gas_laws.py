@@ -15,7 +15,7 @@ from quintet.components.meshless_gas.laws import (
 )
 from quintet.components.meshless_gas.moving import laws as moving
 from quintet.components.meshless_gas.viscous import laws as viscous
-from quintet.components.meshless_gas.viscous import slip_laws as slip
+from quintet.components.meshless_gas.viscous.kernels import slip_laws as slip
 
 ANY, PART, LARGE = Between(-1.0, 1.0), Between(0.01, 1.0), Between(0.5, 2.0)
 AIR = transport.Transport(1.7e-5, 273.0, 110.0, 1400.0, 287.0)
