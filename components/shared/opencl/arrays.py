@@ -44,17 +44,28 @@ class DeviceArray:
         copy.put(array)
         return copy
 
-    def put(self, array: NDArray[Any]) -> None:
-        """Write an array of the same shape."""
-        if array.size:
-            contiguous = np.ascontiguousarray(array, self.dtype)
-            opencl().enqueue_copy(self.queue, self.memory, contiguous, is_blocking=True)
+    @property
+    def row_size(self) -> int:
+        """Bytes of a row."""
+        return int(np.prod(self.shape[1:])) * self.dtype.itemsize
 
-    def copy_from(self, source: "DeviceArray") -> None:
-        """Copy an array of the same shape, on the device."""
-        size = int(np.prod(self.shape)) * self.dtype.itemsize
+    def put(self, array: NDArray[Any], first: int = 0) -> None:
+        """Write rows from the first one on, by default all of them."""
+        if array.size:
+            contiguous, offset = np.ascontiguousarray(array, self.dtype), first * self.row_size
+            opencl().enqueue_copy(
+                self.queue, self.memory, contiguous, dst_offset=offset, is_blocking=True
+            )
+
+    def copy_from(self, source: "DeviceArray", start: int = 0, first: int = 0) -> None:
+        """Copy the rows of an array from row `start` on to rows from `first` on, on the device."""
+        width = source.row_size
+        size = (source.shape[0] - start) * width
         if size:
-            opencl().enqueue_copy(self.queue, self.memory, source.memory, byte_count=size)
+            offsets = {"src_offset": start * width, "dst_offset": first * width}
+            opencl().enqueue_copy(
+                self.queue, self.memory, source.memory, byte_count=size, **offsets
+            )
 
     def clear(self) -> None:
         """Write 0 everywhere."""

@@ -159,6 +159,10 @@ class Flow:
             write_pressure(self.constants, state.position_density[rows], motion)
             state.velocity_pressure[rows] = motion
 
+    def reads_to(self, zone: Zone) -> float:
+        """Depth [m] behind its face to which a buffer reads the fluid."""
+        return zone.length + (BEFORE + AROUND) * self.constants.smoothing.length
+
     def _before(self, state: State, zone: Zone, points: Array) -> Array:
         """Velocity and density of the fluid before a buffer, beside points (n, 3) m; (n, 5)."""
         h = self.constants.smoothing.length

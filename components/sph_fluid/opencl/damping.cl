@@ -1,13 +1,13 @@
 /* A zone that damps the fluid's motion, in double precision; laws are printed. */
 
-/* Damp velocities in a zone at the end of a step. `taken` sums by how much their squares fall. */
+/* Damp velocities in a zone at the end of a step; rows of buffers keep theirs. `taken` sums by how much their squares fall. */
 __kernel void damp(
     int split, double4 low, double4 high, int axis, int is_lower, double rate, double dt,
-    __global const double4 *position, __global double4 *velocity, __global double *taken,
+    __global const long *role, __global const double4 *position, __global double4 *velocity, __global double *taken,
     __global double4 *extremes)
 {
     const int i = get_global_id(0);
-    if (i >= split) return;
+    if (i >= split || role && role[i]) return;
     const double4 r = position[i];
     if (r.x < low.x || r.y < low.y || r.z < low.z || r.x > high.x || r.y > high.y || r.z > high.z)
         return;

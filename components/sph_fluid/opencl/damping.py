@@ -28,6 +28,6 @@ class DeviceDamping:
             numbers = (*side, np.float64(zone.rate), np.float64(dt))
             run(
                 rows.queue, self._damp, rows.split, np.int32(rows.split), low, high, *numbers,
-                rows.position, rows.velocity, speed2_loss, rows.extremes,
+                rows.role, rows.position, rows.velocity, speed2_loss, rows.extremes,
             )  # fmt: skip
         self.zones.count_work(state, speed2_loss.get())

@@ -39,7 +39,8 @@ from quintet.interfaces.errors import SceneError
 FIRST_DEVICE = Resources(device="opencl")
 # Parts of the host that a device has too; not all are imported.
 PARTS = {
-    "NoSymmetry", "Symmetry", "HaloAndImages", "NoOpenBoundaries", "OneRank", "SeveralRanks",
+    "NoSymmetry", "Symmetry", "HaloAndImages", "NoOpenBoundaries", "Flow", "OneRank",
+    "SeveralRanks",
 }  # fmt: skip
 
 
@@ -58,11 +59,12 @@ class DeviceFluid(DeviceComponent):
         require_doubles(device, resources.device)
         self.params, (self.takes, self.gives) = params, self.ports_of(params)
         self.host = SphFluid(params, replace(resources, device="cpu"))
-        self.walls_move = self.host.walls_move
+        self.walls_move, self.items_vary = self.host.walls_move, self.host.items_vary
         self._refuse_other_parts(resources.device)
         copies = copies_on_device(self.host.symmetry, resources.communicator)
-        parts = (self.host.lists.reach, self.host.frame, self.host.damping)
-        self.stepping = Stepping(params, queue, device.is_processor, *parts, copies)
+        parts = (self.host.frame, self.host.damping, copies, self.host.open_boundaries)
+        reach = self.host.lists.reach
+        self.stepping = Stepping(params, queue, device.is_processor, reach, *parts)
         self._speed = 0.0  # m/s, of the fastest fluid, where the scheme looks ahead by it
         self.host.make_film_rows = self.stepping.make_film_rows
         self._put()
@@ -155,6 +157,8 @@ class DeviceFluid(DeviceComponent):
         if rows.copies.are_there:
             self._sort_on_host()
             return
+        if self.stepping.renew(state):
+            self._is_read = False
         low, high, densest, is_outside = rows.survey()
         densest_allowed = self.params.density * (1.0 + TAIT * diagnostics.MACH) ** (1.0 / TAIT)
         if is_outside or densest > densest_allowed:
@@ -166,10 +170,14 @@ class DeviceFluid(DeviceComponent):
             self._follow_lists()
 
     def _sort_on_host(self) -> None:
-        """Sort on the host, which drops fluid that left the tank and brings rows to their ranks."""
+        """Sort on the host, which drops fluid that left the tank and brings rows to their ranks.
+
+        What has come and gone on the device already stays as it is.
+        """
         self._get()
         state = self.host.state
         diagnostics.refuse_dense(state, self.params, self.host.all_ranks)
+        self.host.open_boundaries.renew(state)
         self.host.lists.sort(state)
         refuse_many_lost(state, self.params)
         self._put()

@@ -14,7 +14,7 @@ from quintet.components.sph_fluid.state import State, Whole
 
 # Arrays of `State` that are on the device, by the rows that they have.
 OF_ALL = ("position_density", "velocity_pressure", "previous_density_rate", "minus_rho_div_u")
-OF_FLUID = ("identity", "acceleration")
+OF_FLUID = ("identity", "acceleration", "role")
 OF_BOUNDARY = ("mirror_point", "sample")
 
 
@@ -42,7 +42,7 @@ class DeviceState:
         self.copies = copies
         self.queue, self.reach, self.mirrored = queue, reach, params.mirrored
         self.cells = Cells(queue, kernels, by_rows)
-        self._survey, self._gather = kernels.survey, kernels.gather
+        self._survey, self.gather = kernels.survey, kernels.gather
         self._note_places, self._look_from = kernels.note_places, kernels.look_from
         self._place, self._find_not_finite = kernels.place_samples, kernels.find_not_finite
         walls = params.boundary.tank
@@ -73,16 +73,8 @@ class DeviceState:
         self.split, self.count, self.samples = state.fluid, state.particles, len(row)
         names = (*OF_ALL, *OF_FLUID, *OF_BOUNDARY)
         self.arrays = {name: DeviceArray.of(self.queue, getattr(state, name)) for name in names}
-        self._spare = {}
-        if not self.copies.are_there:  # else rows are sorted on the host
-            self._spare = {
-                name: DeviceArray(self.queue, array.shape, array.dtype)
-                for name, array in self.arrays.items()
-            }
         self._put_numbers(state, row)
-        self.reference = DeviceArray(self.queue, (self.count + len(state.mirror_point), 3))
-        self.extremes = DeviceArray(self.queue, (self.count + self.samples, 4))
-        self._most, self._least = (DeviceArray(self.queue, (self.split, 4)) for _ in range(2))
+        self.make_room()
         self.row = DeviceArray.of(self.queue, row.astype(np.int32))
         self._placed = DeviceArray(self.queue, (self.samples, 9))
         if len(state.reference):
@@ -91,6 +83,19 @@ class DeviceState:
                 self._list_as_noted(state)
             else:
                 self._list_around(around)
+
+    def make_room(self) -> None:
+        """Make room for what is computed of all rows; lists are made again."""
+        self._spare = {}
+        if not self.copies.are_there:  # else rows are sorted on the host
+            self._spare = {
+                name: DeviceArray(self.queue, array.shape, array.dtype)
+                for name, array in self.arrays.items()
+            }
+        rows = self.count + self.arrays["mirror_point"].shape[0]
+        self.reference = DeviceArray(self.queue, (rows, 3))
+        self.extremes = DeviceArray(self.queue, (self.count + self.samples, 4))
+        self._most, self._least = (DeviceArray(self.queue, (self.split, 4)) for _ in range(2))
 
     def _put_numbers(self, state: State, row: Whole) -> None:
         """Number the samples of this rank, which have rows (k,), if others have samples too."""
@@ -104,6 +109,11 @@ class DeviceState:
     def numbers(self) -> DeviceArray:
         """Numbers (boundary,) of the samples among those of this rank; -1 for walls."""
         return self._own_numbers or self.arrays["sample"]
+
+    @property
+    def role(self) -> DeviceArray | None:
+        """Numbers (fluid,) of the buffers that hold rows, 0 for none, if there are any buffers."""
+        return self.arrays["role"] if self.arrays["role"].shape[0] else None
 
     def get(self, state: State) -> None:
         """Copy the rows into a host's state."""
@@ -201,7 +211,7 @@ class DeviceState:
         if source.shape[0]:
             width = int(np.prod(source.shape[1:]))
             numbers = map(np.int32, (count, first, base, width))
-            run(self.queue, self._gather, count, key, *numbers, source, target)
+            run(self.queue, self.gather, count, key, *numbers, source, target)
 
     def _list_as_noted(self, state: State) -> None:
         """List neighbours from where rows were when they were sorted, as they are in order."""

@@ -21,6 +21,7 @@ from quintet.components.sph_fluid.state import Array
 if TYPE_CHECKING:
     from quintet.components.sph_fluid.opencl.damper import DeviceDamper
     from quintet.components.sph_fluid.opencl.moving_frame import DeviceFrame
+    from quintet.components.sph_fluid.opencl.open_rows import DeviceFlow
 
 
 class Passes:
@@ -37,11 +38,13 @@ class Passes:
     precision : "double" or "single"
         Of pairs.
     frame : Frame
+    open_rows : DeviceFlow or None
+        Of inflows and outflows.
     """
 
     def __init__(
         self, params: SphFluidParams, lanes: int, kernels: Any, rows: DeviceState,
-        precision: Precision, frame: Frame,
+        precision: Precision, frame: Frame, open_rows: "DeviceFlow | None" = None,
     ) -> None:  # fmt: skip
         self.params, self.rows, self.precision, self.frame = params, rows, precision, frame
         self.queue, self.lanes = rows.queue, lanes
@@ -53,7 +56,7 @@ class Passes:
         self._drift: DeviceArray | None = None
         self._move_by, self._drifts = kernels.move_by, params.xsph > 0.0
         self._damper = damper(params, kernels, rows)
-        self._moving_frame = moving_frame(frame, kernels, rows)
+        self._moving_frame, self._open_rows = moving_frame(frame, kernels, rows), open_rows
         self._real = np.float64 if precision == "double" else np.float32
         self._constants = bytes_of(pair_law(params).constants, np.float64)
         self._gravity = np.array([*params.gravity, 0.0], self._real)
@@ -130,6 +133,8 @@ class Passes:
         )  # fmt: skip
         if self._moving_frame:
             self._moving_frame.accelerate(self.rate)
+        if self._open_rows:
+            self._open_rows.hold(self.rate, self._drift)
 
     def _write_boundary(self) -> None:
         """Write pressures, and velocities that viscosity sees, before a pass over pairs."""

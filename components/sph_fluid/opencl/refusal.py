@@ -9,7 +9,7 @@ SUPPORTED = frozenset(
     """material xsph shepard_every acoustic_damper spacing sound_speed fluid initial lost_limit
     remove_inside_bodies dimensions kernel smoothing staggered density gravity density_diffusion
     negative_pressure precision integration courant gauges wave viscosity.artificial
-    viscosity.kinematic viscosity.form boundary.walls boundary.symmetry
+    viscosity.kinematic viscosity.form boundary.walls boundary.symmetry boundary.inflow boundary.outflow
     boundary.open_faces boundary.wall_velocity boundary.obstacles boundary.meshes boundary.motion
     boundary.pistons boundary.damping boundary.wall_offset boundary.sample_depth
     boundary.wall_viscosity_factor boundary.lubrication_films boundary.roughness
@@ -25,7 +25,7 @@ def refuse_what_needs_the_processor(params: SphFluidParams, device: str) -> None
 def limits(params: SphFluidParams) -> dict[str, Limit]:
     """Limits of keys on devices."""
     edge = params.boundary
-    counts = {name: len(getattr(edge, name)) for name in ("periodic", "inflow", "outflow")}
+    counts = {name: len(getattr(edge, name)) for name in ("periodic",)}
     is_potential = edge.method == "potential"
     return {
         f"boundary.{name}": Limit(count, count > 0, "empty", "Remove them")

@@ -27,5 +27,5 @@ class DeviceFilter:
             rows.queue, self._filter, rows.split, split, rows.position, lists.near, lists.middle,
             lists.row_stride, lists.item_stride, self._constants, density,
         )  # fmt: skip
-        places = (rows.position, rows.velocity)
+        places = (rows.role, rows.position, rows.velocity)
         run(rows.queue, self._take, rows.split, split, density, *places, self._constants)

@@ -10,6 +10,7 @@ from quintet.components.shared.opencl.devices import build
 from quintet.components.shared.opencl.prelude import Precision
 from quintet.components.sph_fluid.constants import pair_law
 from quintet.components.sph_fluid.motion.frame import Frame
+from quintet.components.sph_fluid.open_boundaries.method import NoOpenBoundaries, OpenBoundaries
 from quintet.components.sph_fluid.opencl.copies import CopiesOnDevice
 from quintet.components.sph_fluid.opencl.device_state import DeviceState
 from quintet.components.sph_fluid.opencl.passes import Passes
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
     from quintet.components.sph_fluid.boundary.film_geometry import Faces, Films
     from quintet.components.sph_fluid.opencl.damping import DeviceDamping
     from quintet.components.sph_fluid.opencl.film_rows import DeviceFilmRows
+    from quintet.components.sph_fluid.opencl.open_rows import DeviceFlow
     from quintet.components.sph_fluid.opencl.shepard_filter import DeviceFilter
 
 LANES_OF_PROCESSORS = 4  # doubles in one of its vectors; other devices make lanes of rows
@@ -54,6 +56,8 @@ class Stepping:
         In which the fluid is computed.
     damping : Damping
     copies : CopiesOnDevice
+    open_boundaries : OpenBoundaries
+        Of the host.
     """
 
     def __init__(
@@ -65,17 +69,21 @@ class Stepping:
         frame: Frame,
         damping: Damping,
         copies: CopiesOnDevice,
+        open_boundaries: OpenBoundaries,
     ) -> None:
         self.params, self.queue = params, queue
         precision: Precision = "double" if params.precision == "float64" else "single"
         law, lanes = pair_law(params), LANES_OF_PROCESSORS if is_processor else 1
         damps = not isinstance(damping, NoDamping)
-        text = rows_program(law, precision, lanes, frame.forces, damps, copies.source)
+        more = copies.source + open_source(open_boundaries)
+        text = rows_program(law, precision, lanes, frame.forces, damps, more)
         kernels = build(self.queue, text)
         self._of_films = kernels.film_sides, kernels.fluid_share
         behind = copies.make(self.queue, kernels)
         self.rows = DeviceState(self.queue, kernels, params, reach, is_processor, behind)
-        self.passes = Passes(params, lanes, kernels, self.rows, precision, frame)
+        self._open_rows = open_rows(open_boundaries, kernels, self.rows)
+        parts = (self.rows, precision, frame, self._open_rows)
+        self.passes = Passes(params, lanes, kernels, *parts)
         self._scheme = scheme(params, kernels, self.rows, self.passes)
         self.damping = damping_zones(damping, kernels, self.rows)
         self.filter = shepard_filter(params, kernels, self.rows)
@@ -90,6 +98,14 @@ class Stepping:
         square, approach, shift2, speed2 = rows.cells.greatest(rows.extremes, rows.split)
         acceleration, moved, speed = map(math.sqrt, (square, shift2, speed2))
         return Extremes(acceleration, float(approach), moved, speed, float(np.isinf(speed2)))
+
+    def renew(self, state: State) -> bool:
+        """Let particles come and go by inflows and outflows; return whether there are any."""
+        if self._open_rows is None:
+            return False
+        self._open_rows.renew(state)
+        self.passes.resize()
+        return True
 
     def damp(self, state: State, dt: float, speed: float) -> float:
         """Damp the fluid in zones at the end of a step; return its greatest speed [m/s] then."""
@@ -117,6 +133,30 @@ def shepard_filter(
     from quintet.components.sph_fluid.opencl.shepard_filter import DeviceFilter
 
     return DeviceFilter(params, kernels, rows)
+
+
+def open_source(open_boundaries: OpenBoundaries) -> str:
+    """Kernels of inflows and outflows."""
+    if isinstance(open_boundaries, NoOpenBoundaries):
+        return ""
+    # Left out of scenes whose fluid neither comes nor goes.
+    from quintet.components.sph_fluid.opencl.open_rows import SOURCE
+
+    return SOURCE.read_text()
+
+
+def open_rows(
+    open_boundaries: OpenBoundaries, kernels: Any, rows: DeviceState
+) -> "DeviceFlow | None":
+    """Inflows and outflows."""
+    if isinstance(open_boundaries, NoOpenBoundaries):
+        return None
+    # Left out of scenes whose fluid neither comes nor goes.
+    from quintet.components.sph_fluid.open_boundaries.flow import Flow
+    from quintet.components.sph_fluid.opencl.open_rows import DeviceFlow
+
+    assert isinstance(open_boundaries, Flow)
+    return DeviceFlow(open_boundaries, kernels, rows)
 
 
 def damping_zones(damping: Damping, kernels: Any, rows: DeviceState) -> "NoDamping | DeviceDamping":

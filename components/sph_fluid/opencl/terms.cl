@@ -52,15 +52,15 @@ __kernel void filter_density(
     density[i] = weights / volumes;
 }
 
-/* Densities that were filtered, and their pressures. */
+/* Densities that were filtered, and their pressures; rows of buffers keep theirs. */
 __kernel void take_density(
-    int split, __global const double *density, __global double4 *position,
-    __global double4 *velocity, Constants constants)
+    int split, __global const double *density, __global const long *role,
+    __global double4 *position, __global double4 *velocity, Constants constants)
 {
     const int i = get_global_id(0);
     if (i >= split) return;
-    position[i].w = density[i];
-    velocity[i].w = pressure_term(density[i], constants);
+    if (!role || role[i] == 0) position[i].w = density[i];
+    velocity[i].w = pressure_term(position[i].w, constants);
 }
 
 /* Move the fluid with velocities for a time. */
