@@ -18,8 +18,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from quintet.components.shared.search.cells import Whole
-from quintet.components.shared.search.neighbours import NeighbourLists, neighbours_among
+from quintet.components.shared.search.cells import Whole, grid_around
+from quintet.components.shared.search.neighbours import Around, NeighbourLists, neighbours_among
 from quintet.components.shared.threads import Team
 from quintet.interfaces.component import Array
 from quintet.interfaces.errors import StepError
@@ -173,7 +173,20 @@ def neighbours_and_images(
     NeighbourLists
         Of the points that are no images; their neighbours may be images.
     """
+    around = around_images(points, first_group, split, rows, reach, query_points)
+    _, first, second, looking, grid = around
+    return neighbours_among(reach, points, first, second, looking, split, team, buffer, grid)
+
+
+def around_images(
+    points: Array, first_group: NDArray[np.bool_], split: int, rows: int, reach: float,
+    query_points: Array | None,
+) -> Around:  # fmt: skip
+    """All that rows may have as neighbours, of points and their images.
+
+    Parameters are those of `neighbours_and_images`.
+    """
     first, second = np.flatnonzero(first_group), np.flatnonzero(~first_group)
     others = points[split:rows] if query_points is None else query_points
     looking = np.concatenate([points[:split], others])
-    return neighbours_among(reach, points, first, second, looking, split, team, buffer)
+    return Around(points, first, second, looking, grid_around(points.take(first, 0), reach))

@@ -7,9 +7,8 @@ of walls and samples are these: what is left of a symmetric whole moves as that 
 import numpy as np
 from numpy.typing import NDArray
 
-from quintet.components.shared.search.cells import grid_around
 from quintet.components.shared.search.neighbours import Around, NeighbourLists, neighbours_among
-from quintet.components.shared.symmetry import Plane, SymmetryImages
+from quintet.components.shared.symmetry import Plane, SymmetryImages, around_images
 from quintet.components.shared.threads import Team
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.state import Array, State
@@ -45,10 +44,7 @@ class Symmetry:
         state.position_density = self.images.with_room(state.position_density, rows)
         state.velocity_pressure = self.images.with_room(state.velocity_pressure, rows)
         self.write_images(state)
-        first, second = np.flatnonzero(is_fluid), np.flatnonzero(~is_fluid)
-        others = points[split:rows] if query_points is None else query_points
-        looking = np.concatenate([points[:split], others])
-        return Around(points, first, second, looking, grid_around(points.take(first, 0), reach))
+        return around_images(points, is_fluid, split, rows, reach, query_points)
 
     def write_images(self, state: State) -> None:
         """Write the images of all particles as they are."""

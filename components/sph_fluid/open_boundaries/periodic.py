@@ -12,8 +12,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from quintet.components.shared.search.neighbours import NeighbourLists
-from quintet.components.shared.symmetry import neighbours_and_images
+from quintet.components.shared.search.neighbours import Around, NeighbourLists, neighbours_among
+from quintet.components.shared.symmetry import around_images
 from quintet.components.shared.threads import Team
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.state import Array, State, Whole
@@ -56,13 +56,19 @@ class PeriodicImages:
     def __init__(self, params: SphFluidParams) -> None:
         self.periods = periods(params)
         self.has_obstacles = bool(params.boundary.obstacles)
-        self._shifts: list[Shift] = []
+        self.shifts: list[Shift] = []
 
     def neighbours(
         self, state: State, reach: float, team: Team, query_points: Array | None,
         buffer: NDArray[np.int32],
     ) -> NeighbourLists:  # fmt: skip
         """Make room for images, and lists of the fluid, then of the boundary or query points."""
+        points, first, second, looking, grid = self.around(state, reach, query_points)
+        arguments = (looking, state.fluid, team, buffer, grid)
+        return neighbours_among(reach, points, first, second, *arguments)
+
+    def around(self, state: State, reach: float, query_points: Array | None) -> Around:
+        """Make room for images, and find all that rows may have as neighbours."""
         rows = state.particles
         has_bodies = self.has_obstacles or bool((state.sample >= 0).any())
         points = self._find(state.reference[:rows], reach * (FURTHER if has_bodies else 1.0))
@@ -71,13 +77,11 @@ class PeriodicImages:
         state.position_density = _with_room(state.position_density, rows, len(points))
         state.velocity_pressure = _with_room(state.velocity_pressure, rows, len(points))
         self.write_images(state)
-        return neighbours_and_images(
-            points, is_fluid, state.fluid, rows, reach, team, query_points, buffer
-        )
+        return around_images(points, is_fluid, state.fluid, rows, reach, query_points)
 
     def _find(self, points: Array, reach: float) -> Array:
         """Find rows with images, nearer to a face than `reach` [m]; points (n + images, 3) m."""
-        self._shifts = []
+        self.shifts = []
         for axis, low, length in self.periods:
             coordinates, first = points[:, axis], len(points)
             ends = [
@@ -88,13 +92,13 @@ class PeriodicImages:
                 origin = np.flatnonzero(is_near)
                 shift = Shift(axis, distance, origin, slice(first, first + len(origin)))
                 first += len(origin)
-                self._shifts.append(shift)
+                self.shifts.append(shift)
                 points = np.concatenate([points, _shifted(points[origin], axis, distance)])
         return points
 
     def write_images(self, state: State) -> None:
         """Write the images of all particles as they are."""
-        for axis, distance, origin, images in self._shifts:
+        for axis, distance, origin, images in self.shifts:
             state.position_density[images] = state.position_density[origin]
             state.position_density[images, axis] += distance
             state.velocity_pressure[images] = state.velocity_pressure[origin]
@@ -105,7 +109,7 @@ class PeriodicImages:
 
     def write_values(self, values: NDArray[np.generic], rows: int) -> None:
         """Write the images of values (rows + images, ...)."""
-        for _, _, origin, images in self._shifts:
+        for _, _, origin, images in self.shifts:
             values[images] = values[origin]
 
     def reflect_crossed(self, state: State) -> None:

@@ -66,23 +66,43 @@ class CopiesOnDevice(NamedTuple):
 NONE = CopiesOnDevice("", lambda queue, kernels: NoCopies())
 
 
-def copies_on_device(symmetry: SymmetryPlanes, communicator: Any) -> CopiesOnDevice:
-    """Return what makes copies and images; `symmetry` is the host's, which finds them."""
+def copies_on_device(symmetry: SymmetryPlanes, communicator: Any, repeats: bool) -> CopiesOnDevice:
+    """Return what makes copies and images; `symmetry` is the host's, which finds them.
+
+    `repeats` tells whether the tank repeats along an axis.
+    """
     if isinstance(symmetry, NoSymmetry):
         return NONE
-    # Left out of fluids on one rank without planes of symmetry.
-    from quintet.components.sph_fluid.boundary.symmetry import Symmetry
-    from quintet.components.sph_fluid.opencl import images
-
-    source = images.SOURCE.read_text()
     if communicator is None or communicator.size == 1:
-        assert isinstance(symmetry, Symmetry)  # other images are refused
-        return CopiesOnDevice(source, partial(images.ImagesOfOneRank, symmetry))
+        return images_of_periods(symmetry) if repeats else images_of_one_rank(symmetry)
     # Only a fluid of several ranks loads mpi4py.
     from quintet.components.shared.opencl import halo
+    from quintet.components.sph_fluid.opencl import images
     from quintet.components.sph_fluid.opencl.ranks import DeviceCopies
     from quintet.components.sph_fluid.ranks.halo import HaloAndImages
 
     assert isinstance(symmetry, HaloAndImages)
     make = partial(DeviceCopies, communicator, symmetry)
-    return CopiesOnDevice(source + halo.source(), make)
+    return CopiesOnDevice(images.SOURCE.read_text() + halo.source(), make)
+
+
+def images_of_one_rank(symmetry: SymmetryPlanes) -> CopiesOnDevice:
+    """Return what makes images in planes of symmetry."""
+    # Left out of fluids without planes of symmetry.
+    from quintet.components.sph_fluid.boundary.symmetry import Symmetry
+    from quintet.components.sph_fluid.opencl import images
+
+    assert isinstance(symmetry, Symmetry)
+    make = partial(images.ImagesOfOneRank, symmetry)
+    return CopiesOnDevice(images.SOURCE.read_text(), make)
+
+
+def images_of_periods(symmetry: SymmetryPlanes) -> CopiesOnDevice:
+    """Return what makes images a period away."""
+    # Left out of fluids whose tank does not repeat.
+    from quintet.components.sph_fluid.open_boundaries.periodic import PeriodicImages
+    from quintet.components.sph_fluid.opencl import periods
+
+    assert isinstance(symmetry, PeriodicImages)
+    make = partial(periods.DevicePeriods, symmetry)
+    return CopiesOnDevice(periods.SOURCE.read_text(), make)

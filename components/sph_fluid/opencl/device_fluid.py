@@ -9,7 +9,7 @@ Samples of bodies are placed in the host's state and copied to the device. Where
 the host's rows of the boundary have the order of the device's.
 
 On several ranks each has a device, or a share of one, with the rows of its part and copies of those
-that are near. Then, and with planes of symmetry, rows are sorted on the host.
+that are near. Then, and with planes of symmetry or periods, rows are sorted on the host.
 """
 
 from dataclasses import replace
@@ -39,8 +39,8 @@ from quintet.interfaces.errors import SceneError
 FIRST_DEVICE = Resources(device="opencl")
 # Parts of the host that a device has too; not all are imported.
 PARTS = {
-    "NoSymmetry", "Symmetry", "HaloAndImages", "NoOpenBoundaries", "Flow", "OneRank",
-    "SeveralRanks",
+    "NoSymmetry", "Symmetry", "PeriodicImages", "HaloAndImages", "NoOpenBoundaries", "Flow",
+    "OneRank", "SeveralRanks",
 }  # fmt: skip
 
 
@@ -61,7 +61,8 @@ class DeviceFluid(DeviceComponent):
         self.host = SphFluid(params, replace(resources, device="cpu"))
         self.walls_move, self.items_vary = self.host.walls_move, self.host.items_vary
         self._refuse_other_parts(resources.device)
-        copies = copies_on_device(self.host.symmetry, resources.communicator)
+        repeats = bool(params.boundary.periodic)
+        copies = copies_on_device(self.host.symmetry, resources.communicator, repeats)
         parts = (self.host.frame, self.host.damping, copies, self.host.open_boundaries)
         reach = self.host.lists.reach
         self.stepping = Stepping(params, queue, device.is_processor, reach, *parts)
@@ -150,8 +151,8 @@ class DeviceFluid(DeviceComponent):
     def _sort(self) -> None:
         """Bring near rows together and list neighbours.
 
-        It is done on the host where there are several ranks or planes of symmetry, and where fluid
-        left the tank.
+        It is done on the host where there are several ranks, planes of symmetry or periods, and
+        where fluid left the tank.
         """
         rows, state = self.stepping.rows, self.host.state
         if rows.copies.are_there:
@@ -177,6 +178,7 @@ class DeviceFluid(DeviceComponent):
         self._get()
         state = self.host.state
         diagnostics.refuse_dense(state, self.params, self.host.all_ranks)
+        self.host.symmetry.wrap(state)
         self.host.open_boundaries.renew(state)
         self.host.lists.sort(state)
         refuse_many_lost(state, self.params)
