@@ -111,6 +111,5 @@ MANIFEST = Manifest(
     ranks=True,
     ranks_limits="quintet.components.sph_fluid.ranks.refusal:refuse_what_needs_one_rank",
     opencl="quintet.components.sph_fluid.opencl.device_fluid:DeviceFluid",
-    opencl_limits="quintet.components.sph_fluid.opencl.refusal:refuse_what_needs_the_processor",
     opencl_ranks="quintet.components.sph_fluid.ranks.refusal:refuse_what_needs_one_rank",
 )

@@ -51,6 +51,14 @@ CHANNEL: dict[str, Any] = {
         "discharge_gauges": [0.75],
     },
 }
+REPEATED = DROP | {
+    "boundary": {
+        "method": "dbc",
+        "walls": DROP["fluid"][0] | {"highest": [0.4, 0.4, 0.4]},
+        "periodic": ["x"],
+        "open_faces": ["y-", "y+", "z-", "z+"],
+    }
+}
 FLUME: dict[str, Any] = {
     "spacing": 0.02,
     "sound_speed": 14.1,
@@ -83,9 +91,6 @@ def cases() -> tuple[ConformCase, ...]:
     twice = {**DROP, "integration": "symplectic"}
     box = {"shape": "box", "lowest": [0.0, 0.0, 0.0], "highest": [0.2, 1.0, 0.2]}
     slab = {**DROP, "dimensions": 2, "fluid": [box]}
-    whole = {"walls": DROP["fluid"][0] | {"highest": [0.4, 0.4, 0.4]}, "periodic": ["x"]}
-    sides = ["y-", "y+", "z-", "z+"]
-    turning = {**DROP, "boundary": {**DROP["boundary"], **whole, "open_faces": sides}}
     return (
         _case("drop", DROP),
         _case("drop, mirrored walls and films", {**DROP, **MIRRORED}, mirror=True),
@@ -93,7 +98,7 @@ def cases() -> tuple[ConformCase, ...]:
         _case("drop in two dimensions", slab, volume=2.5e-3),
         ConformCase("drop in a tank that rolls", {**DROP, "boundary": ROLLING}, dt=1e-4),
         ConformCase("drop beside a piston", {**DROP, "boundary": PUSHED}, dt=1e-4),
-        _case("drop in a tank that repeats", turning | {"gauges": {"mass_gauge": True}}),
+        _case("drop in a tank that repeats", REPEATED | {"gauges": {"mass_gauge": True}}),
         ConformCase("channel with inflow and outflow", CHANNEL, dt=1e-4, still=False),
         ConformCase("flume with a wave maker", FLUME, dt=1e-4, still=False),
         *on_devices(),
@@ -101,7 +106,7 @@ def cases() -> tuple[ConformCase, ...]:
 
 
 def on_devices() -> tuple[ConformCase, ...]:
-    """Two kinds of walls on a device, where there is one, each alone and with samples."""
+    """Kinds of walls on a device, where there is one, with and without samples; flows."""
     # Loads pyopencl where it is installed; these cases alone ask for it.
     from quintet.components.shared.opencl.devices import is_any_there
 
@@ -110,6 +115,7 @@ def on_devices() -> tuple[ConformCase, ...]:
     walls = {"walls": ROLLING["walls"]}
     mirrored = DROP | MIRRORED | {"boundary": walls | {"method": "mdbc"}, "gauges": GAUGES}
     dynamic = DROP | {"boundary": walls | {"method": "dbc"}}
+    potential = DROP | {"boundary": {"method": "potential"}}
     tables = {"mirrored": mirrored, "dynamic": dynamic}
     walls_alone = (
         ConformCase(f"drop between {name} walls, OpenCL", table, dt=1e-4, device="opencl")
@@ -117,6 +123,15 @@ def on_devices() -> tuple[ConformCase, ...]:
     )
     return (
         *walls_alone,
+        ConformCase(
+            "channel with inflow and outflow, OpenCL",
+            CHANNEL,
+            dt=1e-4,
+            still=False,
+            device="opencl",
+        ),
+        _case("drop in a tank that repeats, OpenCL", REPEATED, device="opencl"),
+        _case("drop, contact potential, OpenCL", potential, device="opencl"),
         _case("drop, OpenCL", DROP, device="opencl"),
         _case("drop, mirrored walls and films, OpenCL", DROP | MIRRORED, True, device="opencl"),
     )

@@ -25,6 +25,7 @@ class DynamicBoundary:
 
     def __init__(self, samples: Samples) -> None:
         self.samples, self.mask = samples, np.zeros(0)
+        self.by_potential: Whole = np.zeros(0, np.int64)
 
     def start(self, state: State) -> None:
         """Nothing to do: walls have their densities."""

@@ -19,6 +19,7 @@ class BoundaryMethod(Protocol):
     contact: ContactPotential  # numbers of the contact potential, where there is one
     mask: Array  # (n,) 1 for rows at which it acts, 0 for others; (0,) if it acts at all, or none
     stable_dt: float  # s, largest step that it allows
+    by_potential: Whole  # (k,) samples under the contact potential
     reads_images: bool  # whether `write_pressure` reads more than the rows that it writes
 
     def start(self, state: State) -> None:

@@ -20,6 +20,7 @@ class PotentialBoundary:
     def __init__(self, params: SphFluidParams, samples: Samples) -> None:
         self.samples, self.stiffness = samples, ContactStiffness(params)
         self.contact, self.mask = self.stiffness.numbers, np.zeros(0)
+        self.by_potential: Whole = np.zeros(0, np.int64)
 
     def start(self, state: State) -> None:
         """Set the stiffness of all walls."""
@@ -27,7 +28,8 @@ class PotentialBoundary:
         self.stable_dt = self.stiffness.write(state, rows)
 
     def join(self, state: State, static: Fields) -> None:
-        """Nothing to do: samples are stiff once they are placed."""
+        """Find that all samples are under it; they are stiff once they are placed."""
+        self.by_potential = np.arange(len(self.samples.volume))
 
     def follow_samples(self, state: State, fields: Fields, first: int = 0) -> None:
         """Set the stiffness of samples where they are."""

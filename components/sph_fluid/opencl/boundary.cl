@@ -54,7 +54,8 @@ static Fit fit_density(
 }
 
 /* Density and p/rho^2 of walls and samples, as if the fluid went on into them. A sample whose
-   mirror point sees no fluid takes the mean around itself; its list stands behind those of all. */
+   mirror point sees no fluid takes the mean around itself; its list stands behind those of all.
+   Samples under the contact potential have neither. */
 __kernel void extrapolate_density(
     int split, int count, __global const double *mirror, __global const long *sample,
     __global double4 *position, __global double4 *velocity, __global const int *near,
@@ -62,7 +63,7 @@ __kernel void extrapolate_density(
     Constants constants)
 {
     const int b = get_global_id(0), i = split + b;
-    if (i >= count) return;
+    if (i >= count || sample[b] == BY_POTENTIAL) return;
     const double4 to = position[i];
     double3 at = vload3(b, mirror);
     Fit fit = fit_density(at, to, i, i, position, near, end, row_stride, item_stride, constants);

@@ -27,14 +27,12 @@ from quintet.components.sph_fluid.boundary.method import NoFilms
 from quintet.components.sph_fluid.component import LOADS, SphFluid
 from quintet.components.sph_fluid.mass_balance.losses import refuse_many_lost
 from quintet.components.sph_fluid.opencl.copies import copies_on_device
-from quintet.components.sph_fluid.opencl.refusal import refuse_what_needs_the_processor
 from quintet.components.sph_fluid.opencl.stepping import Extremes, Stepping
 from quintet.components.sph_fluid.pairs.interaction import relative_volume
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.ports import SHOWS
 from quintet.components.sph_fluid.setup.tait import TAIT
-from quintet.interfaces.component import Fields, Keys, Resources
-from quintet.interfaces.errors import SceneError
+from quintet.interfaces.component import Fields, Keys, Resources, Totals
 
 FIRST_DEVICE = Resources(device="opencl")
 # Parts of the host that a device has too; not all are imported.
@@ -54,7 +52,6 @@ class DeviceFluid(DeviceComponent):
     host: SphFluid
 
     def __init__(self, params: SphFluidParams, resources: Resources = FIRST_DEVICE) -> None:
-        refuse_what_needs_the_processor(params, resources.device)
         device, queue = device_and_queue(resources)
         require_doubles(device, resources.device)
         self.params, (self.takes, self.gives) = params, self.ports_of(params)
@@ -79,11 +76,6 @@ class DeviceFluid(DeviceComponent):
 
     def bind(self, static: Fields, joined: Keys) -> None:
         """Make room for the samples of the surfaces joined."""
-        if np.any(static.get("surface.contact", 0.0)):
-            raise SceneError(
-                "on a device, samples of bodies must press as walls do; found a link that chooses "
-                'the contact potential. Remove its contact, or set device = "cpu".'
-            )
         self.host.bind(static, joined)
         self._put()
 
@@ -112,9 +104,8 @@ class DeviceFluid(DeviceComponent):
             self.stepping.filter.apply()
             self._is_read = False
         if state.steps % judgement.EVERY == 0:
-            self._get()
             isolated = not len(host.samples.volume) and self.params.boundary.is_still
-            judgement.note(state, self.params, host.totals(), isolated, host.all_ranks)
+            judgement.note(state, self.params, self.totals(), isolated, host.all_ranks)
         extremes = self.stepping.step(state, dt, partial(self._apply_forces, dt))
         extremes = Extremes(*host.all_ranks.greatest(*extremes))
         self._is_read = False
@@ -191,7 +182,8 @@ class DeviceFluid(DeviceComponent):
         volume = relative_volume(host.samples, host.state, self.params)
         if len(volume):
             host.symmetry.write_values(volume, host.state.particles)
-        self.stepping.passes.follow(volume)
+        host.boundary.resize(host.state, host.symmetry)
+        self.stepping.passes.follow(volume, host.boundary)
         if not isinstance(host.films, NoFilms) and len(host.state.reference):
             host.samples.listed = rows.listed(host.samples.row)
             host.films.resize(host.state, rows.lengths())
@@ -199,6 +191,7 @@ class DeviceFluid(DeviceComponent):
     def _put(self) -> None:
         """Copy the host's state to the device."""
         host, rows, state = self.host, self.stepping.rows, self.host.state
+        rows.by_potential = host.boundary.by_potential
         rows.put(state, rows.copies.around(state, rows.reach, host.boundary))
         self.stepping.passes.resize()
         if len(state.reference):
@@ -217,11 +210,18 @@ class DeviceFluid(DeviceComponent):
         return self.stepping.rows.is_finite()
 
     def _list_on_host(self) -> None:
-        """List what is near, for gauges, from where the rows were when they were sorted."""
+        """List what is near, for gauges and energies, from where the rows were last sorted."""
         host = self.host
         if len(host.state.reference):
             host.lists.make(host.state, host.boundary, host.symmetry, host.team)
         self._is_listed = True
+
+    def totals(self) -> Totals:
+        """Mass, momentum and energies; that of a contact potential is summed over lists."""
+        self._get()
+        if self.host.boundary.contact.on and not self._is_listed:
+            self._list_on_host()
+        return self.host.totals()
 
     def give(self, wanted: Keys) -> Fields:
         """Copy out the mean force of the last step on each sample, and what gauges read now."""

@@ -8,6 +8,7 @@ from quintet.components.shared.opencl.arrays import DeviceArray, run
 from quintet.components.shared.opencl.cells import Cells, NearLists
 from quintet.components.shared.search.cells import Grid, grid_between, sorted_into
 from quintet.components.shared.search.neighbours import Around, Lists
+from quintet.components.sph_fluid.boundary.kernels.mirrored_density import BY_POTENTIAL
 from quintet.components.sph_fluid.opencl.copies import Copies
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.state import State, Whole
@@ -41,6 +42,8 @@ class DeviceState:
     ) -> None:  # fmt: skip
         self.copies = copies
         self.queue, self.reach, self.mirrored = queue, reach, params.mirrored
+        self.walls_look = params.boundary.method != "potential"
+        self.by_potential: Whole = np.zeros(0, np.int64)  # (k,) samples under the contact potential
         self.cells = Cells(queue, kernels, by_rows)
         self._survey, self.gather = kernels.survey, kernels.gather
         self._note_places, self._look_from = kernels.note_places, kernels.look_from
@@ -98,11 +101,15 @@ class DeviceState:
         self._most, self._least = (DeviceArray(self.queue, (self.split, 4)) for _ in range(2))
 
     def _put_numbers(self, state: State, row: Whole) -> None:
-        """Number the samples of this rank, which have rows (k,), if others have samples too."""
+        """Number the samples of this rank, which have rows (k,), if others have samples too.
+
+        Those under the contact potential have the number BY_POTENTIAL.
+        """
         self._own_numbers: DeviceArray | None = None
-        if self.copies.are_there:
+        if self.copies.are_there or len(self.by_potential):
             numbers = np.full(len(state.sample), -1)
             numbers[row - self.split] = np.arange(len(row))
+            numbers[row[self.by_potential] - self.split] = BY_POTENTIAL
             self._own_numbers = DeviceArray.of(self.queue, numbers)
 
     @property
@@ -133,6 +140,8 @@ class DeviceState:
         state.reference[self.split :] = self.reference.get(self.split)
         for array in (state.position_density, state.velocity_pressure):
             array[state.sample_rows()] = array[row]
+        if not self.walls_look:  # how stiff walls are limits the step
+            state.velocity_pressure[self.split :] = self.velocity.get(self.split)
 
     def make_acceleration(self) -> bool:
         """Make room for accelerations (fluid, 3) m/s2; False where they are there."""
@@ -155,10 +164,15 @@ class DeviceState:
         sample_rows[:, 1] = state.velocity_pressure[row, :3]
         if self.mirrored:
             sample_rows[:, 2] = state.mirror_point[row - self.split]
+        stiffness = None
+        if len(self.by_potential):
+            stiff = np.full(self.samples, -1.0)
+            stiff[self.by_potential] = state.velocity_pressure[row[self.by_potential], 3]
+            stiffness = DeviceArray.of(self.queue, stiff)
         self._placed.put(sample_rows.reshape(-1, 9))
         run(
             self.queue, self._place, self.samples, np.int32(self.samples), np.int32(self.split),
-            self.row, self._placed, self.position, self.velocity, self.mirror,
+            self.row, self._placed, stiffness, self.position, self.velocity, self.mirror,
         )  # fmt: skip
 
     def survey(self) -> tuple[np.ndarray, np.ndarray, float, bool]:
@@ -202,7 +216,9 @@ class DeviceState:
         state.reference, state.moved = np.zeros((rows, 3)), 0.0
         if self.samples:
             self.follow_boundary(state)
-            self.row.put(state.sample_rows())
+            row = state.sample_rows()
+            self.row.put(row)
+            self._put_numbers(state, row)
         self._list(self.position, grid, fluid_key, boundary_key)
 
     def _take_rows(self, name: str, key: DeviceArray, count: int, first: int, base: int) -> None:
@@ -233,10 +249,12 @@ class DeviceState:
             self.cells.starts(fluid_key, 0, split, grid),
             self.cells.starts(boundary_key, split, boundary_count, grid),
         )
-        query_points = None
-        if self.mirrored:
-            query_points = DeviceArray(self.queue, (boundary_count + self.samples, 3))
-            numbers = map(np.int32, (self.count, boundary_count, query_points.shape[0]))
+        query_points, last = None, self.count
+        if self.first_listed >= 0:
+            last = self.first_listed
+            looking = last - split  # boundary rows that look from their mirror points
+            query_points = DeviceArray(self.queue, (looking + self.samples, 3))
+            numbers = map(np.int32, (self.count, looking, query_points.shape[0]))
             run(
                 self.queue,
                 self._look_from,
@@ -247,7 +265,7 @@ class DeviceState:
                 query_points,
             )
         self.lists: NearLists = self.cells.lists(
-            position, query_points, split, self.count, grid, starts, self.reach, self.extremes
+            position, query_points, split, last, grid, starts, self.reach, self.extremes
         )
 
     def _list_around(self, around: Around) -> None:
@@ -271,11 +289,14 @@ class DeviceState:
     @property
     def first_listed(self) -> int:
         """Where the lists of samples that look from where they are begin; -1: at their rows."""
-        return self.count if self.mirrored else -1
+        if self.mirrored:
+            return self.count
+        return -1 if self.walls_look else self.split
 
     def listed(self, row: Whole) -> Whole:
         """Rows (samples,) of the neighbour lists around samples with these rows (samples,)."""
-        return self.count + np.arange(len(row)) if self.mirrored else row
+        first = self.first_listed
+        return first + np.arange(len(row)) if first >= 0 else row
 
     def lengths(self) -> Lists:
         """How many neighbours samples have, as lists of the host without the neighbours."""

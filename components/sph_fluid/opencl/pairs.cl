@@ -2,7 +2,8 @@
 
    DIFFUSION, XSPH and DAMPER are defined where a scene has them; VOLUME where particles of the
    boundary have volumes of their own, over that of a particle of the fluid; APPARENT where these
-   have velocities of their own that kinematic viscosity sees. */
+   have velocities of their own that kinematic viscosity sees; CONTACT where the contact potential
+   acts at the boundary, and PARTIAL where the mask tells at which of its rows. */
 
 #define AS_IT_IS(slope) slope
 #ifdef VOLUME
@@ -22,6 +23,20 @@
 #define SEEN_ITSELF u
 #endif
 
+#ifdef PARTIAL
+#define MASK_NEAR NUMBERS(mask)
+#define MASK_ITSELF mask[i]
+#else
+#define MASK_NEAR 0
+#define MASK_ITSELF 0
+#endif
+#ifdef CONTACT
+#define PRESSED(pressure, mask) \
+    (pressure * contact_factor(r2, mask, boundary.contact, constants.smoothing))
+#else
+#define PRESSED(pressure, mask) pressure
+#endif
+
 /* Neighbours k to k + LANES of row i: what all sums need. */
 #define PAIR(stop_) \
     const int stop = stop_; \
@@ -33,13 +48,13 @@
     const reals r2 = dx * dx + dy * dy + dz * dz; \
     const reals dot = dx * (u.x - other.f0) + dy * (u.y - other.f1) + dz * (u.z - other.f2)
 
-#define FORCE(law, sum, terms, weighted, seen) \
+#define FORCE(law, sum, terms, weighted, seen, pressure_i, pressure_j) \
     const reals density = GATHERED(position, w); \
     const tuple_3v per = inverses(r2, more + density, constants); \
     const reals approach = dot * per.f1; \
     const reals slope = weighted(gradient(r2, per.f0, constants.smoothing)); \
     const tuple_3v away = {dx, dy, dz}; \
-    const reals pressures = u.w + GATHERED(velocity, w); \
+    const reals pressures = pressure_i + pressure_j; \
     fastest = max_reals(fastest, fabs(approach)); \
     density_rate += dot * slope; \
     sum = law(sum, away, own, seen, r2, pressures, approach, slope, per.f1, per.f2, terms)
@@ -63,8 +78,8 @@ __kernel void rates(
     __global const int *near, __global const int *middle, __global const int *end,
     long row_stride, long item_stride, Constants constants, FluidTerms fluid,
     BoundaryTerms boundary, real4 gravity, __global const real *volume,
-    __global const real4 *apparent, __global real4 *rate, __global double *drift,
-    __global double *minus_rho_div_u, __global double4 *extremes)
+    __global const real *mask, __global const real4 *apparent, __global real4 *rate,
+    __global double *drift, __global double *minus_rho_div_u, __global double4 *extremes)
 {
     const int i = get_global_id(0);
     if (i >= count) return;
@@ -91,7 +106,7 @@ __kernel void rates(
 #endif
     for (int k = 0; k < turn; k += LANES) {
         PAIR(turn);
-        FORCE(fluid_force, force, fluid, AS_IT_IS, other);
+        FORCE(fluid_force, force, fluid, AS_IT_IS, other, u.w, GATHERED(velocity, w));
 #ifdef DIFFUSION
         const reals flux = diffusive_flux(density - r.w, dx, dy, dz, fluid.diffusion);
         diffused += flux * slope * (r2 * per.f1 * per.f2);
@@ -106,7 +121,8 @@ __kernel void rates(
     for (int k = turn; k < last; k += LANES) {
         PAIR(last);
         const tuple_3v apparent_j = SEEN_NEAR;
-        FORCE(boundary_force, push, boundary, OF_NEAR, apparent_j);
+        const reals pressure_j = PRESSED(GATHERED(velocity, w), MASK_NEAR);
+        FORCE(boundary_force, push, boundary, OF_NEAR, apparent_j, u.w, pressure_j);
     }
     const real x = constants.mass * (TOTAL(force.f0) + TOTAL(push.f0)) + gravity.x;
     const real y = constants.mass * (TOTAL(force.f1) + TOTAL(push.f1)) + gravity.y;
@@ -129,7 +145,8 @@ __kernel void sample_forces(
     int samples, __global const int *row, int listed, __global const real4 *position,
     __global const real4 *velocity, __global const int *near, __global const int *end,
     long row_stride, long item_stride, Constants constants, BoundaryTerms boundary,
-    __global const real *volume, __global const real4 *apparent, __global double4 *force)
+    __global const real *volume, __global const real *mask, __global const real4 *apparent,
+    __global double4 *force)
 {
     const int s = get_global_id(0);
     if (s >= samples) return;
@@ -145,7 +162,9 @@ __kernel void sample_forces(
     reals density_rate = 0, fastest = 0;
     for (int k = 0; k < last; k += LANES) {
         PAIR(last);
-        FORCE(boundary_force, push, boundary, OF_ITSELF, other);
+        const reals pressure_j = GATHERED(velocity, w);
+        const reals pressure_i = PRESSED(u.w, MASK_ITSELF);
+        FORCE(boundary_force, push, boundary, OF_ITSELF, other, pressure_i, pressure_j);
     }
     const double square = constants.mass * constants.mass;
     force[s] = (double4)(

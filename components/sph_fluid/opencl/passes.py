@@ -10,8 +10,9 @@ from quintet.components.shared.opencl.devices import build
 from quintet.components.shared.opencl.prelude import Precision
 from quintet.components.shared.opencl.types import bytes_of
 from quintet.components.shared.single_precision import rounded
-from quintet.components.sph_fluid.constants import pair_law
-from quintet.components.sph_fluid.laws import PairLaw
+from quintet.components.sph_fluid.boundary.method import BoundaryMethod
+from quintet.components.sph_fluid.constants import NO_POTENTIAL, pair_law
+from quintet.components.sph_fluid.laws import ContactPotential, PairLaw
 from quintet.components.sph_fluid.motion.frame import Frame, StillFrame
 from quintet.components.sph_fluid.opencl.device_state import DeviceState
 from quintet.components.sph_fluid.opencl.programs import pairs_program
@@ -60,15 +61,15 @@ class Passes:
         self._real = np.float64 if precision == "double" else np.float32
         self._constants = bytes_of(pair_law(params).constants, np.float64)
         self._gravity = np.array([*params.gravity, 0.0], self._real)
-        self._build(own_volume=False)
+        self._build(NO_POTENTIAL, own_volume=False)
 
-    def _build(self, own_volume: bool) -> None:
+    def _build(self, contact: ContactPotential, own_volume: bool) -> None:
         """Compile the sums over pairs, with or without volumes of boundary particles."""
-        law = pair_law(self.params, own_volume=own_volume or None)
+        law = pair_law(self.params, contact, own_volume or None)
         text = pairs_program(law, self.precision, self.lanes, self._has_apparent)
         program = build(self.queue, text, self.precision)
         self._rates, self._sample_forces = program.rates, program.sample_forces
-        self._own_volume = own_volume
+        self._built_for = contact, own_volume
         if self.precision == "single":
             # Densities are counted from that at no pressure, as `SinglePrecision` counts them.
             constants = law.constants._replace(base=law.constants.density)
@@ -96,14 +97,16 @@ class Passes:
         if self.precision == "single":
             self._narrowed = [DeviceArray(self.queue, with_copies, self._real) for _ in range(2)]
 
-    def follow(self, volume: Array) -> None:
+    def follow(self, volume: Array, boundary: BoundaryMethod) -> None:
         """Follow new lists, with volumes (n,) of all rows, (0,) if all are alike.
 
-        They are over that of a particle of the fluid.
+        They are over that of a particle of the fluid; `boundary` is that of the host.
         """
-        self._volume = DeviceArray.of(self.queue, volume.astype(self._real))
-        if bool(len(volume)) != self._own_volume:
-            self._build(bool(len(volume)))
+        arrays = (volume.astype(self._real), boundary.mask.astype(self._real))
+        self._volume, self._mask = (DeviceArray.of(self.queue, array) for array in arrays)
+        needed = boundary.contact, bool(len(volume))
+        if needed != self._built_for:
+            self._build(*needed)
 
     def centre(self, low: Any, high: Any) -> None:
         """Count single positions from the middle of the fluid, between two corners (3,) m."""
@@ -112,7 +115,8 @@ class Passes:
     @property
     def moving(self) -> int:
         """Rows whose density obeys the equation of continuity, from the first on."""
-        return self.rows.split if self.params.mirrored else self.rows.count
+        is_dynamic = self.params.boundary.method == "dbc"
+        return self.rows.count if is_dynamic else self.rows.split
 
     def compute(self, later: float) -> None:
         """Write accelerations and rates of density, of the state as it is.
@@ -128,8 +132,8 @@ class Passes:
         run(
             self.queue, self._rates, self.moving, np.int32(rows.split), np.int32(self.moving),
             *self._particles, lists.near, lists.middle, lists.end, lists.row_stride,
-            lists.item_stride, *structs, self._gravity, self._volume, self._apparent, self.rate,
-            self._drift, rows.arrays["minus_rho_div_u"], rows.extremes,
+            lists.item_stride, *structs, self._gravity, self._volume, self._mask, self._apparent,
+            self.rate, self._drift, rows.arrays["minus_rho_div_u"], rows.extremes,
         )  # fmt: skip
         if self._moving_frame:
             self._moving_frame.accelerate(self.rate)
@@ -169,7 +173,7 @@ class Passes:
         run(
             self.queue, self._sample_forces, rows.samples, *numbers, *self._particles,
             lists.near, lists.end, lists.row_stride, lists.item_stride, constants, boundary,
-            self._volume, self._apparent, self.force,
+            self._volume, self._mask, self._apparent, self.force,
         )  # fmt: skip
         return np.asarray(self.force.get()[:, :3])
 

@@ -14,6 +14,7 @@ from quintet.components.sph_fluid.integration.kernels import failed
 from quintet.components.sph_fluid.laws import (
     PairLaw,
     add_pair_force,
+    contact_factor,
     damped_pressure_term,
     diffusive_flux,
     inverses,
@@ -59,6 +60,7 @@ def rows_program(
         named(program, "distance_to", fit.distance, VECTOR, 0.0, 0.0, 0.0),
         f"#define Moments {program.add(fit.mean_and_variance, TEN)[1].name}",
         f"#define NO_FLUID {fit.NO_FLUID!r}",
+        f"#define BY_POTENTIAL ({fit.BY_POTENTIAL})",
         f"#define RATE4 {'double4' if precision == 'double' else 'float4'}",
     ]
     sources = [*OF_ROWS]
@@ -104,6 +106,11 @@ def pairs_program(law: PairLaw, precision: Precision, lanes: int, apparent: bool
     ]
     if law.boundary.volume is not None:
         names.append("#define VOLUME")
+    if law.boundary.contact.on is not None:
+        factor = (LANES, LANES, law.boundary.contact, constants.smoothing)
+        names += ["#define CONTACT", named(program, "contact_factor", contact_factor, *factor)]
+    if law.boundary.contact.partial is not None:
+        names.append("#define PARTIAL")
     if apparent:
         names.append("#define APPARENT")
     if law.damper is not None:

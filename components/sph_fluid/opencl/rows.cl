@@ -44,16 +44,19 @@ __kernel void look_from(
     vstore3(vload3(p < boundary ? count + p : row[p - boundary], reference), p, look);
 }
 
-/* Put samples where they are in the coming step: place, velocity and mirror point of each. */
+/* Put samples where they are in the coming step: place, velocity and mirror point of each, and the
+   stiffness of the contact potential there; below 0 where it does not act. */
 __kernel void place_samples(
     int samples, int split, __global const int *row, __global const double *placed,
-    __global double4 *position, __global double4 *velocity, __global double *mirror)
+    __global const double *stiffness, __global double4 *position, __global double4 *velocity,
+    __global double *mirror)
 {
     const int s = get_global_id(0);
     if (s >= samples) return;
     const int i = row[s];
     position[i].xyz = vload3(3 * s, placed);
     velocity[i].xyz = vload3(3 * s + 1, placed);
+    if (stiffness && stiffness[s] >= 0) velocity[i].w = stiffness[s];
     if (mirror) vstore3(vload3(3 * s + 2, placed), i - split, mirror);
 }
 

@@ -9,7 +9,6 @@ import pytest
 from device_fluids import DEVICE, DYNAMIC, MIRRORED, TWICE, advanced, difference, params_of
 
 from quintet.components.sph_fluid.component import SphFluid
-from quintet.components.sph_fluid.conform import CHANNEL
 from quintet.components.sph_fluid.pairs.interaction import relative_wall_volume
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.setup.boundary import Boundary
@@ -21,11 +20,6 @@ pytest.importorskip("pyopencl")
 from quintet.components.shared.opencl.devices import Device
 from quintet.components.sph_fluid.opencl import device_fluid
 from quintet.components.sph_fluid.opencl.device_fluid import DeviceFluid
-from quintet.components.sph_fluid.opencl.refusal import (
-    SUPPORTED,
-    limits,
-    refuse_what_needs_the_processor,
-)
 
 
 @pytest.mark.parametrize(
@@ -179,47 +173,31 @@ def test_fluid_that_leaves_the_tank_is_lost_as_on_the_processor():
         assert np.array_equal(first[key], second[key]), key
 
 
-SIDES = ["y-", "y+", "z-", "z+"]
-WALLED = DYNAMIC["boundary"] | {"open_faces": SIDES}
-REFUSED = {
-    "boundary.method": {"boundary": DYNAMIC["boundary"] | {"method": "potential"}},
-    "boundary.periodic": {"boundary": WALLED | {"periodic": ["x"]}, "gravity": [1.0, 0.0, 0.0]},
-    "boundary.inflow": CHANNEL,
-    "boundary.outflow": CHANNEL,
-}
+# Every key of a fluid: a new one comes with a test that devices compute it as the processor does.
+COMPUTED = frozenset(
+    """material xsph shepard_every acoustic_damper spacing sound_speed fluid initial lost_limit
+    remove_inside_bodies dimensions kernel smoothing staggered density gravity density_diffusion
+    negative_pressure precision integration courant gauges wave viscosity.artificial
+    viscosity.kinematic viscosity.form boundary.method boundary.walls boundary.symmetry
+    boundary.periodic boundary.inflow boundary.outflow boundary.open_faces boundary.wall_velocity
+    boundary.obstacles boundary.meshes boundary.motion boundary.pistons boundary.damping
+    boundary.wall_offset boundary.sample_depth boundary.wall_viscosity_factor
+    boundary.lubrication_films boundary.roughness boundary.potential_stiffness
+    boundary.potential_exponent""".split()
+)
 
 
-def test_inflows_are_refused_with_what_to_do():
-    params = params_of(DYNAMIC | CHANNEL)
-    with pytest.raises(SceneError) as error:
-        refuse_what_needs_the_processor(params, "opencl:0")
-    assert str(error.value).startswith(
-        "on device opencl:0, boundary.inflow must be empty; found 1. Remove them, or set "
-        'device = "cpu".'
-    )
-
-
-def test_parts_of_the_host_that_no_key_tells_of_are_refused(monkeypatch):
-    monkeypatch.setattr(device_fluid, "refuse_what_needs_the_processor", lambda *_: None)
-    with pytest.raises(SceneError, match=r"on device opencl, .* found PeriodicImages\. Set device"):
-        DeviceFluid(params_of(DYNAMIC | REFUSED["boundary.periodic"]), DEVICE)
-
-
-def test_every_key_of_a_fluid_is_supported_or_limited():
+def test_devices_compute_every_key_of_a_fluid():
     inner = {"boundary": Boundary, "viscosity": Viscosity}
     keys = {field.name for field in fields(SphFluidParams)} - inner.keys()
     keys |= {f"{name}.{field.name}" for name, table in inner.items() for field in fields(table)}
-    limited = limits(params_of(DYNAMIC)).keys()
-    assert keys == SUPPORTED | limited and not SUPPORTED & limited
+    assert keys == COMPUTED
 
 
-@pytest.mark.parametrize("key", REFUSED)
-def test_what_devices_cannot_compute_is_refused_by_name(key):
-    params = params_of(DYNAMIC | REFUSED[key])
-    with pytest.raises(
-        SceneError, match=rf'on device opencl, {key} must be .*; found .*set device = "cpu"'
-    ):
-        refuse_what_needs_the_processor(params, "opencl")
+def test_parts_of_the_host_that_no_key_tells_of_are_refused(monkeypatch):
+    monkeypatch.setattr(device_fluid, "PARTS", device_fluid.PARTS - {"NoSymmetry"})
+    with pytest.raises(SceneError, match=r"on device opencl, .* found NoSymmetry\. Set device"):
+        DeviceFluid(params_of(DYNAMIC), DEVICE)
 
 
 def test_a_device_that_is_not_there_is_refused():

@@ -134,9 +134,16 @@ def test_a_device_of_another_name_is_refused_where_it_is_resolved(name):
         device_of(name)
 
 
-def test_check_refuses_what_the_run_on_a_device_would():
-    with pytest.raises(SceneError, match=r"water.*on device opencl, boundary.method must be"):
-        scene("still_water", "water", "opencl", **{"boundary.method": "potential"})
+def refuse_xsph(params, device):
+    if params.xsph:
+        raise SceneError(f"on device {device}, xsph must be 0; found {params.xsph}.")
+
+
+def test_check_refuses_what_the_run_on_a_device_would(monkeypatch):
+    limited = replace(find("sph_fluid"), opencl_limits=f"{__name__}:refuse_xsph")
+    monkeypatch.setattr(component_tables, "find", lambda kind: limited)
+    with pytest.raises(SceneError, match=r"water.*on device opencl, xsph must be 0; found 0.5"):
+        scene("still_water", "water", "opencl", xsph=0.5)
 
 
 @pytest.mark.skipif(not importlib.util.find_spec("pyopencl"), reason="needs pyopencl")
