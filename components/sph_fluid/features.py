@@ -227,7 +227,7 @@ def pressure_parts(params: SphFluidParams, boundary: BoundaryMethod) -> list[Pre
     # Left out of scenes without a damper.
     from quintet.components.sph_fluid.pairs.acoustic_damper import AcousticDamper, MirroredDamper
 
-    walls = [MirroredDamper(params)] if params.mirrored else []
+    walls = [MirroredDamper(params, boundary)] if params.mirrored else []
     return [boundary, AcousticDamper(params, boundary), *walls]
 
 

@@ -32,6 +32,6 @@ class DeviceDamper:
             numbers = map(np.int32, (rows.split, rows.count))
             run(
                 rows.queue, self._mirror, rows.count - rows.split, *numbers, rows.mirror,
-                rows.position, rows.velocity, lists.near, lists.end, lists.row_stride,
+                rows.numbers, rows.position, rows.velocity, lists.near, lists.end, lists.row_stride,
                 lists.item_stride, self._constants,
             )  # fmt: skip

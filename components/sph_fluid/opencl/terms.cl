@@ -12,14 +12,16 @@ __kernel void damp_pressure(
         damped_pressure_term(position[i].w, minus_rho_div_u[i], strength, constants);
 }
 
-/* Add the damper's mean part around their mirror points to p/rho^2 of walls and samples. */
+/* Add the damper's mean part around their mirror points to p/rho^2 of walls and samples; samples
+   under the contact potential have stiffness in its place. */
 __kernel void mirror_damping(
-    int split, int count, __global const double *mirror, __global const double4 *position,
+    int split, int count, __global const double *mirror, __global const long *sample,
+    __global const double4 *position,
     __global double4 *velocity, __global const int *near, __global const int *end,
     long row_stride, long item_stride, Constants constants)
 {
     const int b = get_global_id(0), i = split + b;
-    if (i >= count) return;
+    if (i >= count || sample[b] == BY_POTENTIAL) return;
     const double3 at = vload3(b, mirror);
     double weights = 0, sum = 0;
     for (int k = 0; k < end[i]; k++) {

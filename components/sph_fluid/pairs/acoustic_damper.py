@@ -55,11 +55,11 @@ class MirroredDamper:
 
     reads_images = True
 
-    def __init__(self, params: SphFluidParams) -> None:
-        self.constants = constants(params)
+    def __init__(self, params: SphFluidParams, boundary: BoundaryMethod) -> None:
+        self.boundary, self.constants = boundary, constants(params)
 
     def write_pressure(self, state: State, lists: Lists, team: Team) -> None:
         """Add to p/ρ² of walls and samples what the fluid at their mirror points has of it."""
         arrays = (state.mirror_point, state.position_density, state.velocity_pressure, lists)
-        rows = len(state.mirror_point)
-        team.run(add_mirrored_damping, rows, state.fluid, *arrays, self.constants)
+        rows, mask = len(state.mirror_point), self.boundary.mask
+        team.run(add_mirrored_damping, rows, state.fluid, *arrays, mask, self.constants)

@@ -36,12 +36,18 @@ def write_damped_pressure(
 @njit(**FAST)
 def add_mirrored_damping(
     first: int, last: int, split: int, mirror_point: Array, position: Array, velocity: Array,
-    lists: Lists, constants: Constants,
+    lists: Lists, mask: Array, constants: Constants,
 ) -> None:  # fmt: skip
-    """Add the damper's mean part around their mirror points to p/ρ² of boundary rows."""
+    """Add the damper's mean part around their mirror points to p/ρ² of boundary rows.
+
+    Not where a contact potential acts, by the mask (n,), or (0,) if it does nowhere: stiffness
+    stands there in place of p/ρ².
+    """
     begin, _, end, neighbour = lists
     for b in range(first, last):
         i = split + b
+        if mask.shape[0] > 0 and mask[i] != 0.0:
+            continue
         x, y, z = mirror_point[b, 0], mirror_point[b, 1], mirror_point[b, 2]
         weights, sums = 0.0, 0.0
         for k in range(np.uint64(begin[i]), np.uint64(end[i])):

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from device_bodies import JOINED, MIRRORED, Cube, around
 from fluid_params import fluid_params
 
 from quintet.components.shared.smoothing.smoothing import KERNELS, STEEPEST, gradient, smoothing
@@ -171,3 +172,19 @@ def test_surface_takes_what_the_fluid_gives(
     impulse, gained = struck(fluid, fields | {"surface.mirror": mirror})
     assert np.abs(impulse[:, 2]).sum() > 0.0
     assert impulse.sum(axis=0) == pytest.approx(-gained, abs=1e-12 * np.abs(impulse).sum())
+
+
+def test_the_damper_changes_no_stiffness_of_the_contact_potential() -> None:
+    fluid, cube = (
+        SphFluid(around(**MIRRORED, acoustic_damper=0.5, integration="symplectic")),
+        Cube(),
+    )
+    contact = {"surface.contact": np.ones(len(cube.arm))}
+    fluid.bind(cube.static | contact, JOINED)
+    fluid.take(cube.fields())
+    before = fluid.state.velocity_pressure[fluid.samples.row, 3]
+    for _ in range(3):
+        fluid.step(1e-4)
+    after = fluid.state.velocity_pressure[fluid.samples.row, 3]
+    assert before.min() > 0.0
+    assert np.array_equal(after, before)

@@ -39,8 +39,9 @@ def test_walls_and_bodies_push_by_the_contact_potential(changes):
     assert lists.end.shape[0] == device.host.state.fluid + len(cube.arm)  # walls have none
 
 
-def test_links_choose_the_potential_for_the_samples_that_they_bring():
-    params, fluids = around(**MIRRORED), []
+@pytest.mark.parametrize("changes", [{}, {"acoustic_damper": 0.5, "integration": "symplectic"}])
+def test_links_choose_the_potential_for_the_samples_that_they_bring(changes):
+    params, fluids = around(**MIRRORED, **changes), []
     for fluid in (SphFluid(params), DeviceFluid(params, DEVICE)):
         cube = Cube()
         contact = np.zeros(len(cube.arm))
