@@ -5,6 +5,7 @@ device and copied to the host, which exchanges them as `shared/domain/halo.py` d
 arrives is copied to the device and unpacked there.
 """
 
+from functools import partial
 from itertools import pairwise
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -13,8 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quintet.components.shared.domain.halo import Halo
-from quintet.components.shared.opencl.arrays import DeviceArray, run
+from quintet.components.shared.opencl.arrays import DeviceArray
 from quintet.components.shared.opencl.devices import opencl
+from quintet.components.shared.opencl.launches import Launch
 from quintet.interfaces.component import Array
 
 SOURCE = Path(__file__).with_name("halo.cl")
@@ -28,12 +30,14 @@ def source() -> str:
 
 
 class Messages(NamedTuple):
-    """Room for the rows that are sent, and those that are received, of so many words."""
+    """Room for rows of some arrays that are sent and received, and kernels that copy them."""
 
     sent: DeviceArray  # (sent, words) words
     received: DeviceArray  # (copies, words) words
     staged: Array  # (sent + copies, words) words, both on the host
     halo: Halo  # of these
+    packs: list[Launch]  # of each array
+    unpacks: list[Launch]
 
 
 class DeviceHalo:
@@ -49,10 +53,10 @@ class DeviceHalo:
 
     def __init__(self, communicator: Any, queue: Any, kernels: Any) -> None:
         self._communicator, self.queue = communicator, queue
-        self._pack, self._unpack = (opencl().Kernel(kernels, name) for name in ("pack", "unpack"))
+        self._kernel = partial(opencl().Kernel, kernels)
         self.count = 0  # copies
         self._sent_count = 0
-        self._messages: dict[int, Messages] = {}  # by the words of a row
+        self._messages: dict[tuple[DeviceArray, ...], Messages] = {}
 
     def follow(self, sent: list[Whole], received: list[Whole]) -> None:
         """Follow new copies.
@@ -79,39 +83,39 @@ class DeviceHalo:
     def exchange(self, *arrays: DeviceArray) -> None:
         """Bring the copies in arrays (rows, ...) up to date.
 
-        Their rows have whole words of 8 bytes.
+        Their rows have whole words of 8 bytes. The same arrays are exchanged again and again.
         """
         if not (self.count or self._sent_count):
             return
-        widths = [_words(array) for array in arrays]
-        messages = self._of_words(sum(widths))
-        numbers = [
-            tuple(map(np.int32, (width, word, sum(widths))))
-            for width, word in zip(widths, np.cumsum([0, *widths]), strict=False)
-        ]
-        sent, copies = self._sent_count, self.count
-        for array, words in zip(arrays, numbers, strict=True):
-            count = np.int32(sent)
-            run(self.queue, self._pack, sent, self._sent_row, count, *words, array, messages.sent)
+        if arrays not in self._messages:
+            self._messages[arrays] = self._prepared(arrays)
+        messages, sent = self._messages[arrays], self._sent_count
+        for pack in messages.packs:
+            pack.run()
         messages.staged[:sent] = messages.sent.get()
         messages.halo.exchange(messages.staged)
         messages.received.put(messages.staged[sent:])
-        for array, words in zip(arrays, numbers, strict=True):
-            rows = self._received_row, np.int32(copies)
-            run(self.queue, self._unpack, copies, *rows, *words, messages.received, array)
+        for unpack in messages.unpacks:
+            unpack.run()
 
-    def _of_words(self, words: int) -> Messages:
-        """Room for rows of so many words, made when they are first exchanged."""
-        if words not in self._messages:
-            sent, copies = self._sent_count, self.count
-            rows = self._staged_sent, self._staged_received
-            self._messages[words] = Messages(
-                DeviceArray(self.queue, (sent, words)),
-                DeviceArray(self.queue, (copies, words)),
-                np.empty((sent + copies, words)),
-                Halo(self._communicator, *rows, [words]),
-            )
-        return self._messages[words]
+    def _prepared(self, arrays: tuple[DeviceArray, ...]) -> Messages:
+        """Make room for rows of some arrays, and their kernels."""
+        widths = [_words(array) for array in arrays]
+        words, sent, copies = sum(widths), self._sent_count, self.count
+        of_sent, of_copies = (DeviceArray(self.queue, (rows, words)) for rows in (sent, copies))
+        numbers = [
+            tuple(map(np.int32, (width, word, words)))
+            for width, word in zip(widths, np.cumsum([0, *widths]), strict=False)
+        ]
+        packs, unpacks = [], []
+        for array, places in zip(arrays, numbers, strict=True):
+            packed = self._sent_row, np.int32(sent), *places, array, of_sent
+            unpacked = self._received_row, np.int32(copies), *places, of_copies, array
+            packs.append(Launch(self.queue, self._kernel("pack"), sent, *packed))
+            unpacks.append(Launch(self.queue, self._kernel("unpack"), copies, *unpacked))
+        rows = self._staged_sent, self._staged_received
+        halo = Halo(self._communicator, *rows, [words])
+        return Messages(of_sent, of_copies, np.empty((sent + copies, words)), halo, packs, unpacks)
 
 
 def _staged(of_ranks: list[Whole], first: int) -> list[Whole]:
