@@ -10,8 +10,9 @@ from quintet.components.meshless_gas.laws.limiters import limiter_of
 from quintet.components.meshless_gas.opencl.device_cloud import DeviceCloud
 from quintet.components.meshless_gas.opencl.programs import gas_program, physics_of
 from quintet.components.meshless_gas.params import MeshlessGasParams
-from quintet.components.shared.opencl.arrays import GROUP, DeviceArray, run
+from quintet.components.shared.opencl.arrays import GROUP, DeviceArray
 from quintet.components.shared.opencl.devices import Device, build
+from quintet.components.shared.opencl.launches import Kernel
 from quintet.components.shared.opencl.tables import Tables
 from quintet.interfaces.component import Array
 
@@ -43,7 +44,7 @@ class DeviceState:
         text = gas_program(limiter, physics_of(params, is_shared), self.lanes, self.tables.by_rows)
         # A kernel is made once: pyopencl makes another at each look.
         kernels = build(self.queue, text).all_kernels()
-        self._kernels = {kernel.function_name: kernel for kernel in kernels}
+        self._kernels = {kernel.function_name: Kernel(self.queue, kernel) for kernel in kernels}
         self.cloud = cloud = DeviceCloud(domain, self.tables)
         empty, whole, nodes = self.tables.empty, cloud.whole, cloud.nodes
         self.primitive = empty(whole, 5)  # kg/m3, m/s, Pa
@@ -62,7 +63,7 @@ class DeviceState:
 
     def run(self, name: str, rows: int, *arguments: Any) -> None:
         """Run a kernel for so many rows; work items beyond them must return at once."""
-        run(self.queue, self._kernels[name], rows, *arguments)
+        self._kernels[name].run(rows, *arguments)
 
     def has_failed(self) -> bool:
         """Whether a stage of this step has failed."""

@@ -50,7 +50,7 @@ class DeviceArray:
         return int(np.prod(self.shape[1:])) * self.dtype.itemsize
 
     def put(self, array: NDArray[Any], first: int = 0) -> None:
-        """Write rows from the first one on, by default all of them."""
+        """Write an array into as many rows, from row `first` on."""
         if array.size:
             contiguous, offset = np.ascontiguousarray(array, self.dtype), first * self.row_size
             opencl().enqueue_copy(

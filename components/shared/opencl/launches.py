@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from quintet.components.shared.opencl.arrays import GROUP, run
+from quintet.components.shared.opencl.arrays import GROUP, DeviceArray, run
 from quintet.components.shared.opencl.devices import opencl
 
 
@@ -43,4 +43,38 @@ class Launch:
                 if values[place] != self._last[place]:
                     self._kernel.set_arg(place, argument)
             self._enqueue(self._queue, self._kernel, (self._items,), (GROUP,))
+        self._last = values
+
+
+class Kernel:
+    """A kernel of which all arguments, and the number of rows, may change from run to run.
+
+    Parameters
+    ----------
+    queue : pyopencl.CommandQueue
+    kernel : pyopencl.Kernel
+        Used here alone.
+    """
+
+    def __init__(self, queue: Any, kernel: Any) -> None:
+        self._queue, self._kernel = queue, kernel
+        self._enqueue = opencl().enqueue_nd_range_kernel
+        self._last: list[Any] = []  # arguments of the last run: memory, or bytes of numbers
+
+    def run(self, rows: int, *arguments: Any) -> None:
+        """Run the kernel for so many rows; set those of its arguments that have changed."""
+        if not rows:
+            return
+        values = [
+            argument.memory if isinstance(argument, DeviceArray) else argument.tobytes()
+            for argument in arguments
+        ]
+        if not self._last:
+            run(self._queue, self._kernel, rows, *arguments)
+        else:
+            for place, (value, last) in enumerate(zip(values, self._last, strict=True)):
+                if value != last:
+                    is_number = isinstance(value, bytes)
+                    self._kernel.set_arg(place, arguments[place] if is_number else value)
+            self._enqueue(self._queue, self._kernel, (-(-rows // GROUP) * GROUP,), (GROUP,))
         self._last = values

@@ -6,7 +6,7 @@ import pytest
 pytest.importorskip("pyopencl")
 from quintet.components.shared.opencl.arrays import DeviceArray
 from quintet.components.shared.opencl.devices import build, device_of
-from quintet.components.shared.opencl.launches import Launch
+from quintet.components.shared.opencl.launches import Kernel, Launch
 
 TEXT = """
 __kernel void add(double summand, double2 others, int count, __global double *sums)
@@ -37,3 +37,16 @@ def test_a_kernel_without_rows_is_not_run():
     for _ in range(2):
         launch.run(np.float64(1.0), np.zeros(2))
     assert empty.get().shape == (0,)
+
+
+def test_a_kernel_is_run_for_other_rows_and_arrays():
+    queue = device_of("opencl").queue()
+    first, second = (DeviceArray.of(queue, np.zeros(ROWS)) for _ in range(2))
+    kernel = Kernel(queue, build(queue, TEXT).add)
+    others = np.zeros(2)
+    kernel.run(0, np.float64(1.0), others, np.int32(0), first)  # nothing
+    for rows, array, summand in ((5, first, 1.0), (ROWS, second, 1.0), (ROWS, second, 2.0)):
+        kernel.run(rows, np.float64(summand), others, np.int32(rows), array)
+    kernel.run(5, np.float64(2.0), others, np.int32(5), first)
+    assert (first.get()[:5] == 3.0).all() and not first.get()[5:].any()
+    assert (second.get() == 3.0).all()
