@@ -3,6 +3,7 @@
 import subprocess
 import sys
 from dataclasses import fields
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -205,6 +206,22 @@ def test_a_gas_on_the_processor_loads_no_opencl():
     )
     result = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
     assert result.stdout.strip() == "[]", result.stderr
+
+
+def test_a_gas_on_a_device_loads_nothing_that_its_scene_leaves_out():
+    program = (
+        "import sys; from device_gases import DEVICE, STREAM, params_of;"
+        "from quintet.components.meshless_gas.opencl.device_gas import DeviceGas;"
+        "DeviceGas(params_of(STREAM), DEVICE); begin = 'quintet.components.meshless_gas.';"
+        "print(sorted(name.removeprefix(begin) for name in sys.modules if name.startswith(begin)))"
+    )
+    result = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, cwd=Path(__file__).parent
+    )
+    assert "'opencl.stepping'" in result.stdout, result.stderr
+    left_out = ("moving.", "axis", "viscous", "ranks.several", "opencl.bodies", "opencl.ranks")
+    for name in (*left_out, "opencl.axis", "opencl.friction", "opencl.sliding"):
+        assert f"'{name}" not in result.stdout, name
 
 
 def test_a_gas_without_friction_prints_no_laws_of_it():
