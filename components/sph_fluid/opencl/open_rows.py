@@ -70,7 +70,11 @@ class DeviceFlow:
 
     def _read(self, state: State, chosen: Whole) -> State:
         """Copy some rows (k,) of the fluid into a state of their own."""
-        rows, columns = self.rows, {}
+        rows = self.rows
+        columns: dict[str, Any] = {
+            "sample": np.zeros(0, np.int64),
+            "mirror_point": np.zeros((0, 3)),
+        }
         key = DeviceArray.of(rows.queue, chosen)
         for name in (*OF_ALL, *OF_FLUID):
             source = rows.arrays[name]
@@ -79,8 +83,7 @@ class DeviceFlow:
             numbers = map(np.int32, (count, 0, 0, _words(source)))
             run(rows.queue, rows.gather, count, key, *numbers, source, target)
             columns[name] = target.get()
-        none = {"sample": np.zeros(0, np.int64), "mirror_point": np.zeros((0, 3))}
-        return replace(state, **columns, **none, exit_face=state.exit_face[chosen])
+        return replace(state, **columns, exit_face=state.exit_face[chosen])
 
     def _write(self, part: State, row: Whole) -> None:
         """Write the first rows of a state to these rows (k,) of the device."""
@@ -97,8 +100,8 @@ class DeviceFlow:
         rows, queue = self.rows, self.rows.queue
         staying, shifted = rows.split - len(removed), removed - np.arange(len(removed))
         key = DeviceArray(queue, (staying,), np.int64)
-        numbers = (np.int32(staying), DeviceArray.of(queue, shifted), np.int32(len(removed)))
-        run(queue, self._number, staying, *numbers, key)
+        arguments = (np.int32(staying), DeviceArray.of(queue, shifted), np.int32(len(removed)))
+        run(queue, self._number, staying, *arguments, key)
         split, boundary_count = staying + part.fluid - first, rows.count - rows.split
         for name in (*OF_ALL, *OF_FLUID):
             source = rows.arrays[name]
