@@ -101,10 +101,7 @@ class DeviceState:
         self._most, self._least = (DeviceArray(self.queue, (self.split, 4)) for _ in range(2))
 
     def _put_numbers(self, state: State, row: Whole) -> None:
-        """Number the samples of this rank, which have rows (k,), if others have samples too.
-
-        Those under the contact potential have the number BY_POTENTIAL.
-        """
+        """Number samples, of rows (k,), where other ranks or the contact potential have some."""
         self._own_numbers: DeviceArray | None = None
         if self.copies.are_there or len(self.by_potential):
             numbers = np.full(len(state.sample), -1)
@@ -256,14 +253,9 @@ class DeviceState:
             query_points = DeviceArray(self.queue, (looking + self.samples, 3))
             numbers = map(np.int32, (self.count, looking, query_points.shape[0]))
             run(
-                self.queue,
-                self._look_from,
-                query_points.shape[0],
-                *numbers,
-                self.row,
-                self.reference,
-                query_points,
-            )
+                self.queue, self._look_from, query_points.shape[0], *numbers, self.row,
+                self.reference, query_points,
+            )  # fmt: skip
         self.lists: NearLists = self.cells.lists(
             position, query_points, split, last, grid, starts, self.reach, self.extremes
         )
