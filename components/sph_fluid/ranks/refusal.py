@@ -18,11 +18,6 @@ def refuse_what_needs_one_rank(params: SphFluidParams, ranks: int) -> None:
         "boundary.periodic": (edge.periodic, bool(edge.periodic), "empty"),
         "boundary.inflow": (len(edge.inflow), bool(edge.inflow), "empty"),
         "boundary.outflow": (len(edge.outflow), bool(edge.outflow), "empty"),
-        "boundary.pistons.waves.absorption": (
-            "true",
-            any(piston.absorbs for piston in edge.pistons),
-            "false",
-        ),
     }
     for key, (value, is_wrong, right) in limits.items():
         if is_wrong:

@@ -47,7 +47,7 @@ class Absorber:
         self.foreseen = ForeseenSurface(waves.trajectory, waves.water, distance, waves.height)
         self.part, self.room = params.boundary.pistons[number].part, _room(params, number)  # m
         self.spots = _spots(params, number, distance)  # (m, 2) m, at no displacement
-        self.levels = Levels(params, symmetry, ranks, self.spots)
+        self.ranks, self.levels = ranks, Levels(params, symmetry, ranks, self.spots)
 
     def velocity(self, state: State, time: float, displacement: float) -> float:
         """Velocity [m/s] that is added at a time [s], of a paddle displaced so far [m].
@@ -64,7 +64,7 @@ class Absorber:
                 f"{self.room[1]:.3g} m. Move the walls, or lower the waves."
             )
         self.levels.place(self.spots + displacement * self.forward[:2])
-        levels = self.levels.heights(state)
+        levels = self._of_first_rank(self.levels.heights(state))
         if (levels <= self.levels.floor).any():
             x, y = self.levels.spots[int(np.argmin(levels))].tolist()
             raise StepError(
@@ -74,6 +74,11 @@ class Absorber:
         foreseen = self.foreseen.at(time, displacement)
         difference = float(levels.mean()) - self.level - foreseen
         return -self.gain * min(max(difference, -self.highest), self.highest)
+
+    def _of_first_rank(self, levels: Array) -> Array:
+        """Levels (m,) m that rank 0 reads, which has all that is near."""
+        numbers = levels if self.ranks.rank == 0 else np.full(len(levels), -math.inf)
+        return np.array(self.ranks.greatest(*numbers.tolist()))
 
 
 def _spots(params: SphFluidParams, number: int, distance: float) -> Array:

@@ -25,6 +25,14 @@ GAUGES = {
 }
 BLOCK = Path(tempfile.mkdtemp()) / "block.npy"  # of voxels, in the way of the water
 np.save(BLOCK, np.ones((2, 1, 2)))
+ABSORBED = {
+    "paddle": "piston",
+    "depth": 0.4,
+    "height": 0.2,
+    "period": 1.5,
+    "ramp": 0.05,
+    "absorption": True,
+}
 PARAMS = {
     "dam": {
         "boundary__method": "dbc",
@@ -93,6 +101,16 @@ PARAMS = {
         "density_diffusion": 0.1,
         **GAUGES,
     },
+    "absorbing": {  # waves that come back to a paddle
+        "boundary__method": "mdbc",
+        "boundary__walls": ((-0.4, 0.0, 0.0), (1.6, 1.0, 0.8)),
+        "boundary__obstacles": [((-0.2, 0.0, 0.0), (0.0, 1.0, 0.8))],
+        "boundary__pistons": [{"part": "obstacles.0", "waves": ABSORBED}],
+        "initial": {"velocity": ["0.6", "0.0", "0.0"]},
+        "fluid": [(ORIGIN, (1.6, 1.0, 0.4))],
+        "dimensions": 2,
+        **GAUGES,
+    },
     "single": {  # precision, with a plane of symmetry
         "precision": "float32",
         "boundary__method": "mdbc",
@@ -135,7 +153,7 @@ class Run(SolverRun):
         params = fluid_params(spacing=SPACING, **({"sound_speed": 40.0} | PARAMS[self.name]))
         threads = 2 if self.name == "dam" and WORLD.size > 1 else 1
         fluid = self.make(params, threads)
-        if self.name == "pushed":
+        if self.name in ("pushed", "absorbing"):
             fluid.bind({}, frozenset())
         if self.name in BODIES:
             self.arm, normal, volume = fill(BOX, SIZE, SPACING, 0.5 * SPACING)

@@ -7,8 +7,10 @@ from device_bodies import params_of as body_params
 from device_fluids import DEVICE, advanced, difference
 from tubes import TUBE, params_of
 
+from quintet.components.sph_fluid import MANIFEST
 from quintet.components.sph_fluid.component import SphFluid
 from quintet.interfaces.component import Resources, outputs_of
+from quintet.interfaces.errors import SceneError
 
 pytest.importorskip("pyopencl")
 from quintet.components.shared.opencl.devices import Device
@@ -128,3 +130,8 @@ def test_a_body_in_a_flow_is_pushed_as_on_the_processor():
     assert processor.save()["passed"].min() > 0
     assert np.abs(forces[1] - forces[0]).max() < 1e-9 * np.abs(forces[0]).max()
     require_close(processor, device)
+
+
+def test_inflows_are_refused_on_several_devices():
+    with pytest.raises(SceneError, match=r"inflow must be empty of a fluid on 2 ranks; found 1"):
+        MANIFEST.check_device(params_of(TUBE), "opencl", 2)

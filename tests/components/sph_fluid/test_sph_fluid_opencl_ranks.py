@@ -14,7 +14,8 @@ PROGRAM = Path(__file__).with_name("device_on_ranks.py")
 NAMES = ("dam", "body")
 # With terms that are compiled for them alone.
 OTHERS = (
-    "rolling", "pushed", "spilling", "block", "symmetric", "single", "swaying", "uneven", "filmed",
+    "rolling", "pushed", "absorbing", "spilling", "block", "symmetric", "single", "swaying",
+    "uneven", "filmed",
 )  # fmt: skip
 folder = from_the_start(PROGRAM, NAMES, 120, ranks=(1, 2, 3))
 of_others = from_the_start(PROGRAM, OTHERS, 120)

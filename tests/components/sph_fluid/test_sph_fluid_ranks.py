@@ -14,7 +14,7 @@ from quintet.interfaces.errors import SceneError
 pytestmark = pytest.mark.mpi
 PROGRAM = Path(__file__).with_name("fluid_on_ranks.py")
 # Cases with terms that are compiled for them alone: test_sph_fluid_ranks_of_other_terms.py.
-NAMES = ("dam", "body", "spilling", "rolling", "swaying", "pushed")
+NAMES = ("dam", "body", "spilling", "rolling", "swaying", "pushed", "absorbing")
 STEPS = 120  # with lists made again, and rows that change their rank
 folder = from_the_start(PROGRAM, NAMES, STEPS)
 resumed = from_states(PROGRAM, NAMES, 40)

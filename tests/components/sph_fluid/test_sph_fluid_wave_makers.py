@@ -7,11 +7,9 @@ import pytest
 from fluid_params import fluid_params
 from pydantic import ValidationError
 
-from quintet.components.sph_fluid import MANIFEST
 from quintet.components.sph_fluid.component import SphFluid
-from quintet.components.sph_fluid.ranks.refusal import refuse_what_needs_one_rank
 from quintet.components.sph_fluid.setup.wave_theory import transfer
-from quintet.interfaces.errors import SceneError, StepError
+from quintet.interfaces.errors import StepError
 
 SPACING = 0.02
 BLOCK = ((-0.1, 0.0, 0.0), (0.0, 1.0, 0.4))
@@ -175,15 +173,6 @@ def test_an_absorbing_piston_gives_way_to_water_that_is_too_high():
     start = float(part.points[:, 0].max())
     assert end - start == pytest.approx(part.added, abs=2e-5)
     assert part.added < 0.0
-
-
-def test_absorption_is_refused_on_several_ranks():
-    params = fluid_params(**settings(REGULAR | {"absorption": True}))
-    sentence = r"waves\.absorption must be false of a fluid on 2 ranks"
-    with pytest.raises(SceneError, match=sentence):
-        MANIFEST.check_device(params, "opencl", 2)
-    with pytest.raises(SceneError, match=sentence):
-        refuse_what_needs_one_rank(params, 2)
 
 
 def test_a_paddle_that_absorbs_stays_in_its_tank():
