@@ -110,6 +110,36 @@ def rest(corners: Array, density: float) -> tuple[float, float, float]:
     return low - keel, volume, displaced(corners, low)[1]
 
 
+def metacentric_height(corners: Array, level: float, centre: float) -> float:
+    """Transverse metacentric height GM [m]: above 0 the hull floats upright.
+
+    Parameters
+    ----------
+    corners : (t, 3, 3) float array, m
+        Of a closed surface whose middle plane is y = 0.
+    level : float, m
+        Of the water.
+    centre : float, m
+        Height of the centre of mass.
+
+    Notes
+    -----
+    BM = ∫ y² dA / V over the water plane. This integral and the height of the centre of buoyancy
+    are fluxes of (0, 0, y²) and (0, 0, (z - h)²/2) through the wet triangles.
+    """
+    wet = below(corners, level)
+    area = 0.5 * np.cross(wet[:, 1] - wet[:, 0], wet[:, 2] - wet[:, 0])[:, 2]
+
+    def squares(values: Array) -> Array:
+        """Mean square over each triangle, of values (t, 3) at its corners."""
+        return ((values**2).sum(axis=1) + values.sum(axis=1) ** 2) / 12.0
+
+    volume = displaced(corners, level)[0]
+    second_moment = -float((area * squares(wet[:, :, 1])).sum())  # m4
+    buoyancy = level + 0.5 * float((area * squares(wet[:, :, 2] - level)).sum()) / volume
+    return buoyancy + second_moment / volume - centre
+
+
 def main() -> None:
     """Write the hull, and print what it displaces."""
     mesh = trimesh.Trimesh(

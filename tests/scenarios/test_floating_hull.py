@@ -31,6 +31,22 @@ def test_displaced_volume_of_triangles_is_exact() -> None:
     assert cone.volume - below == pytest.approx(half, rel=1e-12)
 
 
+def test_metacentric_height_of_a_box_is_that_of_hydrostatics() -> None:
+    breadth, depth, draught = 3.0, 4.0, 1.5  # m
+    box = np.asarray(trimesh.creation.box((2.0, breadth, depth)).triangles)
+    height = hull.metacentric_height(box, draught - 0.5 * depth, 0.0)
+    expected = 0.5 * (draught - depth) + breadth**2 / (12.0 * draught)  # BG, and I / V
+    assert height == pytest.approx(expected, rel=1e-12)
+
+
+def test_the_mass_at_a_draught_floats_at_that_draught() -> None:
+    corners = hull.triangles()
+    keel = float(corners[:, :, 2].min())
+    volume = hull.displaced(corners, keel + 0.1)[0]
+    density = volume * hull.WATER / hull.displaced(corners, 0.0)[0]
+    assert hull.rest(corners, density)[0] == pytest.approx(0.1, abs=1e-12)
+
+
 def test_the_file_and_the_expectation_are_what_the_script_writes() -> None:
     corners = np.asarray(trimesh.load_mesh(hull.FILE).triangles, np.float64)
     assert hull.displaced(corners, 0.0)[0] == pytest.approx(
