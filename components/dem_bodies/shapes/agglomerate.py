@@ -31,6 +31,7 @@ MOST = 2000  # spheres of one body
 PLACES = 15  # of the lattice for each sphere, at most; more would take long to sort out
 ROUNDS = 4  # in which a centre is moved to its depth
 CLOSE = 1e-3  # of R, by which a depth may differ
+UNITS = {"m": 1.0, "mm": 1e-3, "cm": 1e-2}  # m, of files
 
 
 class Agglomerate(NamedTuple):
@@ -94,19 +95,42 @@ def require_fit(file: str, scale: float, size: Array, dim: int, radius: float) -
     """Refuse spheres that do not fit into the shape, or leave gaps between them."""
     edges = " x ".join(f"{edge:.4g}" for edge in size)
     size_text = f"found {radius:g} m for {Path(file).name} of {edges} m at scale {scale:g}."
-    if 2.0 * radius > size.min() * (1.0 + 1e-9):
+    if does_not_fit(size, radius):
         raise ValueError(
-            "sphere_radius must be at most half the shape's shortest edge, "
-            f"{0.5 * size.min():.4g} m; {size_text} Make it smaller, or correct scale: it is 0.001 "
-            "for a file in mm."
+            "sphere_radius must be at most half the shortest edge of the box around the shape, "
+            f"{0.5 * size.min():.4g} m; {size_text} Make it smaller, or "
+            f"{scale_remedy(scale, size, dim, radius)}."
         )
-    least = math.ceil(0.5 * float(size.max()) / radius - 1e-9)
-    if dim < max(2, least):
+    if dim < fewest_places(size, radius):
         raise ValueError(
-            "the spheres must touch, which dim * 2 * sphere_radius >= the longest edge gives; "
-            f"{size_text} dim is {dim}. Make dim {max(2, least)} or larger, or sphere_radius "
-            "larger, or correct scale: it is 0.001 for a file in mm."
+            "the spheres must touch, which dim * 2 * sphere_radius >= the longest edge of the box "
+            f"around the shape gives; {size_text} dim is {dim}. Make dim "
+            f"{fewest_places(size, radius)} or larger, or sphere_radius larger, or "
+            f"{scale_remedy(scale, size, dim, radius)}."
         )
+
+
+def does_not_fit(size: Array, radius: float) -> bool:
+    """Whether a sphere is wider than a shape."""
+    return bool(2.0 * radius > size.min() * (1.0 + 1e-9))
+
+
+def fewest_places(size: Array, radius: float) -> int:
+    """Places of the lattice along the longest edge with which spheres touch."""
+    return max(2, math.ceil(0.5 * float(size.max()) / radius - 1e-9))
+
+
+def scale_remedy(scale: float, size: Array, dim: int, radius: float) -> str:
+    """Advise the scale of a common unit with which the spheres fit, if there is any."""
+    for unit, metres in UNITS.items():
+        scaled = size * (metres / scale)
+        if does_not_fit(scaled, radius) or dim < fewest_places(scaled, radius):
+            continue
+        edges = " x ".join(f"{edge:.4g}" for edge in scaled)
+        if metres == 1.0:
+            return f"leave scale out: the shape of a file in m is {edges} m"
+        return f"set scale = {metres:g} for a file in {unit}: its shape is {edges} m"
+    return "correct scale, the length in m of one unit in the file"
 
 
 def covering(places: Array, shape: Solid, radius: float, spacing: float) -> Array:

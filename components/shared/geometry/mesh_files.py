@@ -6,7 +6,7 @@ axes x, y, z, what is not zero being solid. Nothing is imported unless a scene n
 
 import itertools
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -50,11 +50,7 @@ def surface(path: Path, scale: float) -> Solid:
             f"voxels (.npy); reading it found {type(error).__name__}: {error}. Convert it."
         ) from error
     if not (mesh.is_watertight and mesh.is_winding_consistent):
-        raise ValueError(
-            f"file {path.name} must be a closed surface, each edge of two triangles whose normals "
-            f"point to the same side; found {wrong_edges(mesh)} other edges on {len(corners)} "
-            "triangles. Repair it, as trimesh.repair can."
-        )
+        raise ValueError(f"file {path.name} {wrong_edges(mesh)}")
     if mesh.volume < 0.0:
         mesh.invert()
     corners = np.asarray(mesh.triangles, np.float64)
@@ -117,12 +113,29 @@ def _crossings(triangles: Array, place: Array) -> tuple[Array, Array]:
     return x, np.sign(whole[through])
 
 
-def wrong_edges(mesh: object) -> int:
-    """Count the edges that two triangles do not pass once in either direction each."""
-    edges = np.asarray(getattr(mesh, "edges", np.zeros((0, 2))), np.int64)
-    _, number = np.unique(np.sort(edges, axis=1), axis=0, return_inverse=True)
+def wrong_edges(mesh: Any) -> str:
+    """Say which edges have no two triangles, or two that look to different sides."""
+    edges = np.asarray(mesh.edges, np.int64)
+    _, first, number = np.unique(
+        np.sort(edges, axis=1), axis=0, return_index=True, return_inverse=True
+    )
     number, way = number.reshape(-1), np.sign(edges[:, 1] - edges[:, 0])
-    return int(((np.bincount(number) != 2) | (np.bincount(number, way) != 0.0)).sum())
+    open_edges = first[np.bincount(number) != 2]
+    wrong = open_edges if len(open_edges) else first[np.bincount(number, way) != 0.0]
+    where = f"on {len(mesh.faces)} triangles"
+    if len(wrong):
+        middle = np.asarray(mesh.vertices)[edges[wrong[0]]].mean(axis=0)
+        place = ", ".join(f"{x:.4g}" for x in middle)
+        where += f", as at ({place}) in the unit of the file"
+    if len(open_edges):
+        return (
+            f"must be a closed surface, each edge of two triangles; found {len(open_edges)} other "
+            f"edges {where}. Close it, as trimesh.repair.fill_holes can."
+        )
+    return (
+        f"must have triangles that all look outwards; found {len(wrong)} edges between two "
+        f"that look to different sides, {where}. Turn some, as trimesh.repair.fix_normals can."
+    )
 
 
 def voxels(path: Path, width: float) -> Solid:

@@ -157,6 +157,9 @@ def test_what_is_wrong_with_a_file_is_told(files):
     cube = trimesh.creation.box((EDGE,) * 3)
     cube.update_faces(np.arange(12) != 5)
     cube.export(files / "open.stl")
+    turned = trimesh.creation.box((EDGE,) * 3)
+    turned.faces[5] = turned.faces[5, ::-1]
+    turned.export(files / "turned.ply")
     corners = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
     pyramid = trimesh.Trimesh(corners, [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
     pyramid.export(files / "pyramid.ply")
@@ -172,17 +175,20 @@ def test_what_is_wrong_with_a_file_is_told(files):
         "bodies.0.file none.stl must lie beside the scene; in its folder": body("none.stl"),
         "must be a closed surface": body(files / "open.stl"),
         "found 3 other edges on 11 triangles": body(files / "open.stl"),
+        "on 11 triangles, as at (": body(files / "open.stl"),
+        "turned.ply must have triangles that all look outwards; found 3 edges between two that "
+        "look to different sides, on 12 triangles, as at (": body(files / "turned.ply"),
         "text.stl must be a surface of triangles (STL, OBJ, PLY)": body(files / "text.stl"),
         "text.npy must be one array": body(files / "text.npy"),
         "must have three axes of numbers": body(files / "flat.npy"),
         "of which not all are zero": body(files / "none.npy"),
         "must have finite numbers, 0 outside of the solid; found 1 of 27": body(files / "nan.npy"),
         "found 1 other edges on 24 triangles": body(files / "pair.ply"),
-        "sphere_radius must be at most half the shape's shortest edge, 0.075 m": body(
+        "sphere_radius must be at most half the shortest edge of the box around the shape, 0.075 m": body(
             files / "ball.ply", radius=0.08
         ),
         "found 0.0125 m for": body(files / "cube.stl"),
-        "Make dim 6000 or larger, or sphere_radius larger, or correct": body(files / "cube.stl"),
+        "Make dim 6000 or larger, or sphere_radius larger, or ": body(files / "cube.stl"),
         "must have at most 2000 spheres; dim 40": body(files / "l.npy", 40, scale=0.05),
         "must have room for a sphere within": body(files / "pyramid.ply", 3, 0.3),
         "by file and agglomerate alone (it may have scale and origin); found agglomerate, c": body(
@@ -192,6 +198,21 @@ def test_what_is_wrong_with_a_file_is_told(files):
     }  # fmt: skip
     for sentence, wrong_body in wrong_bodies.items():
         assert sentence in " ".join(mistakes([wrong_body])), (sentence, mistakes([wrong_body]))
+
+
+@pytest.mark.parametrize(
+    ("edge", "scale", "advised"),
+    [
+        (0.15, 0.001, "or leave scale out: the shape of a file in m is 0.15 x 0.15 x 0.15 m."),
+        (150.0, 1.0, "or set scale = 0.001 for a file in mm: its shape is 0.15 x 0.15 x 0.15 m."),
+        (15.0, 1.0, "or set scale = 0.01 for a file in cm: its shape is 0.15 x 0.15 x 0.15 m."),
+        (1.5, 1.0, "or correct scale, the length in m of one unit in the file."),
+    ],
+)
+def test_the_scale_that_fits_is_advised(files, edge, scale, advised):
+    trimesh.creation.box((edge,) * 3).export(files / "some.stl")
+    (text,) = mistakes([body(files / "some.stl", 8, 0.0125, scale=scale)])
+    assert text.endswith(advised)
 
 
 def test_a_file_is_looked_for_in_the_scenes_folder_only(files, monkeypatch):
