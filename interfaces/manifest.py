@@ -113,6 +113,8 @@ class Manifest:
     ``joins`` refuses, with a `SceneError`, what its component's `bind` would refuse: it gets the
     parameters, the static fields of partners as far as their ``initial`` has them, and the names of
     the ports that are joined.
+    ``meets`` gets the parameters and what one partner states in ``initial``. It returns sentences
+    that `check` prints, and refuses with a `SceneError` what cannot be.
     """
 
     kind: str
@@ -124,6 +126,7 @@ class Manifest:
     initial: Callable[[Any], Fields] | None = None
     complete: Callable[[dict[str, Any], Fields], dict[str, Any]] | None = None
     joins: Callable[[Any, Fields, Keys], None] | None = None
+    meets: Callable[[Any, Fields], tuple[str, ...]] | None = None
     bench: str = ""  # "module:function"
     conform: str = ""  # "module:function"
     patience: float = PATIENCE  # s, how long it may keep others waiting beyond three usual windows

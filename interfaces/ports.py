@@ -40,6 +40,13 @@ SURFACE = Port(
 # The same with the mirror image of each sample through its surface, for fluids that ask for it.
 MIRRORED_SURFACE = replace(SURFACE, fields=(*SURFACE.fields, Field("mirror", (3,), "m")))
 SURFACE_LOAD = Port("surface_load", fields=(FORCE,), items="partner")
+# Still water in which bodies may float, with gravity along -z: what a fluid that removes the water
+# inside them states of its port `surface` before it is built, beside its requests.
+STILL_WATER = (
+    Field("water_lowest", (3,), "m"),  # corners of the box of water
+    Field("water_highest", (3,), "m"),
+    Field("water_density", (), "kg/m3"),
+)
 
 # Said by solvers in two dimensions: 2. All that they hold lies in the plane of x and z and is 1 m
 # deep along y, so that a body's volume is its area times 1 m. Positions keep three numbers; a

@@ -53,7 +53,7 @@ Braun, J. Rheol. 30 (1986) 949 (unloading); Thornton, Cummins & Cleary, Powder T
 """
 
 from quintet.components.dem_bodies.params import DemBodiesParams
-from quintet.components.dem_bodies.plan import plan
+from quintet.components.dem_bodies.plan import meets, plan
 from quintet.components.dem_bodies.ports import SHOWS, ports
 from quintet.components.dem_bodies.start import initial
 from quintet.interfaces.manifest import Manifest
@@ -69,6 +69,7 @@ MANIFEST = Manifest(
     ports=ports,
     plan=plan,
     initial=initial,
+    meets=meets,
     bench="quintet.components.dem_bodies.bench:cases",
     conform="quintet.components.dem_bodies.conform:cases",
     opencl="quintet.components.dem_bodies.component:DemBodies",

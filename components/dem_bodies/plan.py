@@ -7,9 +7,11 @@ import numpy as np
 from quintet.components.dem_bodies.contact.expected import expected_frequency
 from quintet.components.dem_bodies.contact.materials import DURATION, SPEED_UP
 from quintet.components.dem_bodies.params import DemBodiesParams
+from quintet.components.dem_bodies.shapes.flotation import flotation_notes, still_water
 from quintet.components.dem_bodies.shapes.placement import cover
 from quintet.components.dem_bodies.shapes.rigid_body import RigidBody
 from quintet.components.dem_bodies.shapes.solid import is_ball, solids
+from quintet.interfaces.component import Fields
 from quintet.interfaces.manifest import Plan
 
 
@@ -27,6 +29,15 @@ def plan(params: DemBodiesParams) -> Plan:
     step = 1.5e-5 + 1.3e-7 * balls + 1e-6 * (count - balls)  # s
     notes = tuple(_mesh_note(body) for body in bodies.kinds if body.file is not None)
     return Plan(count, dt, rate=count / step, bytes_per_item=1200.0, notes=notes)
+
+
+def meets(params: DemBodiesParams, stated: Fields) -> tuple[str, ...]:
+    """How bodies float in the still water that a partner states."""
+    water = still_water(stated)
+    downwards = params.gravity[0] == params.gravity[1] == 0.0 > params.gravity[2]
+    if water is None or params.dimensions == 2 or not downwards:
+        return ()
+    return flotation_notes(params.placed, water)
 
 
 def _mesh_note(body: RigidBody) -> str:

@@ -11,6 +11,7 @@ from quintet.interfaces.component import Array, Field, Port
 from quintet.interfaces.manifest import Ports
 from quintet.interfaces.ports import (
     MIRRORED_SURFACE,
+    STILL_WATER,
     SURFACE,
     SURFACE_LOAD,
     VELOCITY,
@@ -88,6 +89,24 @@ def requests(params: SphFluidParams) -> dict[str, Array]:
     if params.dimensions == 2:
         values["dimensions"] = 2.0
     return {f"surface.{name}": np.array([value]) for name, value in values.items()}
+
+
+def initial(params: SphFluidParams) -> dict[str, Array]:
+    """What a fluid states before it is built: its requests, and the water that bodies float in."""
+    return requests(params) | still_water(params)
+
+
+def still_water(params: SphFluidParams) -> dict[str, Array]:
+    """The box of water that is removed inside bodies, and its density; nothing of other water."""
+    x, y, z = params.hydrostatic_gravity
+    is_box = params.dimensions == 3 and len(params.fluid) == len(params.boxes) == 1
+    if not (params.remove_inside_bodies and is_box and x == y == 0.0 and z < 0.0):
+        return {}
+    values = (*params.boxes[0], params.density)
+    return {
+        f"surface.{field.name}": np.array([value], np.float64)
+        for field, value in zip(STILL_WATER, values, strict=True)
+    }
 
 
 def sample_reach(params: SphFluidParams) -> float:

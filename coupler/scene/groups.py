@@ -11,7 +11,7 @@ from quintet.coupler.coupling.link import Link
 from quintet.coupler.coupling.plan import CouplingPlan
 from quintet.coupler.measures.evaluation import lacking_items
 from quintet.coupler.measures.expectation import Expectation
-from quintet.coupler.scene.joins import refused_joins
+from quintet.coupler.scene.joins import refused_joins, refused_partners
 from quintet.coupler.scene.scene import NAME, ComponentPlan, GroupSettings, SceneFile
 from quintet.interfaces.component import Fields, lacked
 from quintet.interfaces.params import read, shown, unknown
@@ -134,6 +134,7 @@ def begins_wrong(
             return [f"components.{name}: its start cannot be computed ({cause}). Correct it."]
     refused = [text for link in links for text in link.refusals(initial)]
     refused += refused_joins(components, all_links, initial, begun)
+    refused += refused_partners(components, links, begun)
     return [*refused, *lacking_items(expect, initial)]
 
 

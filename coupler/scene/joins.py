@@ -1,4 +1,4 @@
-"""What kinds refuse of joined ports and of their partners, before a component is built."""
+"""What kinds say and refuse of joined ports and partners, before a component is built."""
 
 from collections.abc import Iterator, Mapping
 
@@ -41,6 +41,43 @@ def refused_joins(
             component.manifest.joins(component.checked, static, frozenset(joined))
         except SceneError as error:
             yield from (f"components.{name}: {mistake}" for mistake in error.mistakes)
+
+
+def refused_partners(
+    components: Mapping[str, ComponentPlan], links: list[Link], begun: set[str]
+) -> Iterator[str]:
+    """Yield what the kinds of components refuse of their partners."""
+    for name, partner in _meetings(components, links, begun):
+        try:
+            _meet(components[name], components[partner])
+        except SceneError as error:
+            yield from (f"components.{name}: {mistake}" for mistake in error.mistakes)
+
+
+def partner_notes(
+    components: Mapping[str, ComponentPlan], links: list[Link]
+) -> dict[str, list[str]]:
+    """Sentences of components about their partners, by their names."""
+    begun = {name for name, component in components.items() if component.begun}
+    notes: dict[str, list[str]] = {}
+    for name, partner in _meetings(components, links, begun):
+        notes.setdefault(name, []).extend(_meet(components[name], components[partner]))
+    return notes
+
+
+def _meetings(
+    components: Mapping[str, ComponentPlan], links: list[Link], begun: set[str]
+) -> Iterator[tuple[str, str]]:
+    """Components whose kind has something to say of partners, with each partner."""
+    for link in links:
+        for name in sorted(link.ends) if begun.isdisjoint(link.ends) else ():
+            if components[name].manifest.meets is not None:
+                yield from ((name, partner) for partner in sorted(link.ends - {name}))
+
+
+def _meet(component: ComponentPlan, partner: ComponentPlan) -> tuple[str, ...]:
+    meets = component.manifest.meets
+    return meets(component.checked, partner.initial()) if meets else ()
 
 
 def _described(

@@ -16,6 +16,7 @@ from quintet.coupler.coupling.windows import auto_length, count_windows
 from quintet.coupler.measures.advice import sentences
 from quintet.coupler.measures.expectation import ROUNDING, Expectation
 from quintet.coupler.scene.foreign_code import unread_note
+from quintet.coupler.scene.joins import partner_notes
 from quintet.coupler.scene.planned_times import planned_advice, planned_load
 from quintet.coupler.scene.read import library, parse
 from quintet.coupler.scene.scene import ComponentPlan, Scene, SceneFile
@@ -105,9 +106,11 @@ def print_plan(scene: Scene, console: Console) -> None:
         console.print(line)
     for note in unread_notes(scene):
         console.print(note)
+    of_partners = partner_notes(scene.components, scene.links)
     for plan in (plan for plan in scene.components.values() if not plan.unread):
         console.print(f"{plan.name} takes {_names(plan.takes)}; gives {_names(plan.gives)}")
-        for note in plan.planned.notes if plan.planned else ():
+        notes = plan.planned.notes if plan.planned else ()
+        for note in (*notes, *of_partners.get(plan.name, ())):
             console.print(f"note of {plan.name}: {note}")
     for link in scene.links:
         for one_way in link.transfers:

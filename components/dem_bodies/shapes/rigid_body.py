@@ -49,9 +49,9 @@ class Agglomerate:
     Parameters
     ----------
     dim : 1
-        Places of the lattice along the longest edge.
+        Places of the lattice along the longest edge of the box around the mesh.
     sphere_radius : m
-        Of the spheres.
+        Of the spheres; at most half the shortest edge of that box.
     """
 
     RENAMED: ClassVar = {

@@ -11,10 +11,12 @@ from typing import NamedTuple
 import numpy as np
 
 from quintet.interfaces.component import Array
+from quintet.interfaces.errors import SceneError
 
 CLOSE = 0.5  # spacings: samples of one place, of which one stands for all
 FINER = 0.01  # by which the pitch of the lattice shrinks until there are enough samples
 TRIES = 12
+MOST = 1e8  # places of a lattice: 2.4 GB
 ROUNDING = 1e-9
 # Points (n, 3) m -> how deep (n,) m they lie in the body, negative outside, and outward normals.
 Depths = Callable[[Array], tuple[Array, Array]]
@@ -107,6 +109,13 @@ def _lattice(body: Body, pitch: float, beyond: float = 0.0) -> Array:
     around = np.where(body.high > body.low, beyond, 0.0)
     low, high = body.low - around, body.high + around
     count = np.maximum(np.ceil((high - low) / pitch - ROUNDING).astype(int), 1)
+    if np.prod(count, dtype=float) > MOST:
+        edges = " x ".join(f"{edge:.4g}" for edge in body.high - body.low)
+        raise SceneError(
+            f"a body must have at most {MOST:.0e} places for samples; found "
+            f"{np.prod(count, dtype=float):.2g} of one of {edges} m, {pitch:.4g} m apart. Correct "
+            "its size or scale, or the spacing of its partner."
+        )
     axes = [
         0.5 * (a + b) + (np.arange(n) - 0.5 * (n - 1)) * pitch
         for a, b, n in zip(low, high, count, strict=True)

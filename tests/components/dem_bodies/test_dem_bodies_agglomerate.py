@@ -184,7 +184,7 @@ def test_what_is_wrong_with_a_file_is_told(files):
         "of which not all are zero": body(files / "none.npy"),
         "must have finite numbers, 0 outside of the solid; found 1 of 27": body(files / "nan.npy"),
         "found 1 other edges on 24 triangles": body(files / "pair.ply"),
-        "sphere_radius must be at most half the shortest edge of the box around the shape, 0.075 m": body(
+        "at most half the shortest edge of the box around the shape, 0.075 m": body(
             files / "ball.ply", radius=0.08
         ),
         "found 0.0125 m for": body(files / "cube.stl"),

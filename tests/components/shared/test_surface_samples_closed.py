@@ -16,6 +16,7 @@ from quintet.components.shared.geometry.surface_samples import (
     sphere,
     spheres,
 )
+from quintet.interfaces.errors import SceneError
 
 SPACING = 0.02  # m
 SAMPLING = Sampling(SPACING, 1e9, 0.5 * SPACING, mirrored=True)
@@ -47,6 +48,16 @@ def test_one_sphere_of_a_union_is_filled_as_a_sphere():
         np.linalg.norm(union_samples.arm, axis=1).max(),
         np.linalg.norm(sphere_samples.arm, axis=1).max(),
         rtol=1e-9,
+    )
+
+
+def test_a_body_far_too_large_for_the_spacing_is_refused_before_memory_runs_out():
+    cube = np.asarray(trimesh.creation.box((200.0,) * 3).triangles)
+    with pytest.raises(SceneError) as error:
+        mesh(cube, 200.0**3, SAMPLING)
+    assert str(error.value) == (
+        "a body must have at most 1e+08 places for samples; found 1e+12 of one of 200 x 200 x 200 "
+        "m, 0.02 m apart. Correct its size or scale, or the spacing of its partner."
     )
 
 
