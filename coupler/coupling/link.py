@@ -66,6 +66,10 @@ class Demands:
     judged : bool
         Whether windows are judged by the error in time of what it carries; not where they are the
         steps of both sides, which resolve no vibration of the highest frequency.
+    by_sound : bool
+        Whether the force that it carries answers a change of velocity by sound, with the less
+        momentum the shorter the window; the advice against an unstable coupling then begins with a
+        shorter window.
     first : tuple of str
         Two components, of which the first must step before the other under the scheme serial;
         empty: any order.
@@ -77,6 +81,7 @@ class Demands:
     settles: bool = False
     reason: str = ""
     judged: bool = True
+    by_sound: bool = False
     first: tuple[str, ...] = ()
 
 

@@ -189,7 +189,8 @@ def advice(coupling: Coupling, link: str) -> str:
     other side has. What answers by sound does so the less the shorter the window, but no window
     is short enough for whatever is light: half the step of the side that gives the force was for
     cubes of 50 kg/m³ in water, and not for 20. Windows of that length that are repeated until
-    both sides agree were stable for all of them.
+    both sides agree were stable for all of them, at several times the work. So a link that
+    answers by sound is first advised half the step, or half a window that is no longer than that.
     """
     inner = coupling.carries(link) or coupling
     key = f"groups.{inner.plan.name}." if inner.plan.name else ""
@@ -203,6 +204,11 @@ def advice(coupling: Coupling, link: str) -> str:
     if inner.plan.scheme == "iterated" or "iterated" not in demands.schemes:
         return f"shorten {key}window from {window:.3g} s to {short} s."
     repeated = f'set {key}scheme = "iterated"'
+    if demands.by_sound and window > 0.5 * step:
+        return (
+            f"shorten {key}window from {window:.3g} s to {short} s; if that is not enough, as for "
+            f"what is far lighter than the fluid, also {repeated}, which takes longer."
+        )
     if window <= step:
         return f"{repeated}."
     return f"{repeated}, and shorten {key}window from {window:.3g} s to {short} s."

@@ -12,6 +12,7 @@ from typing import Literal
 
 from quintet.coupler.coupling.link import (
     Binding,
+    Demands,
     Link,
     Ports,
     Transfer,
@@ -130,6 +131,10 @@ class Fsi(Link):
             needs=structure.needs,
         )
         self.transfers = (move, load) if loaded else (move,)
+
+    def demands(self) -> Demands:
+        """Any steps and schemes; fluids that sample surfaces are compressible, if only weakly."""
+        return Demands(by_sound=True)
 
     def requests(self, described: Mapping[str, Fields]) -> dict[str, Fields]:
         """Samples of the surface, as the fluid asks for them."""
