@@ -281,10 +281,13 @@ def _change(name: str, row: Mapping[str, Any]) -> str:
     then = _cores(row["advised_ranks"], row["advised_threads"])
     if now == then:
         return ""
+    keys = " and ".join(k for k in ("ranks", "threads") if row[k] != row[f"advised_{k}"])
     if row["divisible"] and row["advised_ranks"] == 1 < row["advised_threads"]:
         then += f" or {row['advised_threads']} ranks"
+        keys = "threads or ranks"
     source = "measured" if row["serial_measured"] else "planned"
-    return f"{name} {then} instead of {now} (serial share {row['serial']:.2g}, {source})"
+    share = f"serial share {row['serial']:.2g}, {source}"
+    return f"{name} {then} instead of {now} (components.{name}.{keys}; {share})"
 
 
 def _now(name: str, row: Mapping[str, Any]) -> str:

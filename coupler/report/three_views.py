@@ -1,5 +1,6 @@
 """A picture of what a run shows at one time, seen along all three axes."""
 
+import textwrap
 from pathlib import Path
 
 from quintet.coupler.report.axes_units import fit
@@ -14,6 +15,8 @@ from quintet.coupler.report.view_drawing import (
 )
 from quintet.coupler.report.view_steps import view_files, walls
 from quintet.coupler.report.viewpoint import VIEWPOINTS
+
+LETTERS = 24  # of a line of a title: the front view of a long tank is narrow
 
 
 def draw_three_views(run: Path, out: Path, colours: tuple[str, ...] = (), title: str = "") -> Path:
@@ -44,7 +47,8 @@ def draw_three_views(run: Path, out: Path, colours: tuple[str, ...] = (), title:
         panel.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect=1.0)
         for axis, name in zip((panel.xaxis, panel.yaxis), viewpoint.names, strict=True):
             fit(axis, name, "m", float((high - low).max()))
-        panel.set_title(f"{viewpoint.name} view\n{text}".strip(), fontsize=10)
+        lines = [f"{viewpoint.name} view", *textwrap.wrap(text, LETTERS)]
+        panel.set_title("\n".join(lines), fontsize=10)
         panel.locator_params(axis="x", nbins=4)
         draw_walls(panel, around)
         draw_view(panel, view, scales, diameters(view))

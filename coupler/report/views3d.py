@@ -73,6 +73,7 @@ def draw_3d(run: Path, out: Path, picture: Picture, view: str = "", title: str =
     rows = -(-len(times) // columns)
     size = [columns * SIZE[0], rows * SIZE[1]]
     scales, bounds = colour_scales(views, picture.ranges), _bounds(views, still)
+    _hide_warnings()
     plotter = pyvista.Plotter(off_screen=True, shape=(rows, columns), window_size=size)
     for place, (time, shown) in enumerate(zip(times, views, strict=True)):
         plotter.subplot(*divmod(place, columns))
@@ -120,6 +121,7 @@ def animate(
     sample = [_read(files, times[k], picture) for k in chosen]
     scales, bounds = colour_scales(sample, picture.ranges), _bounds(sample, still)
     size = [edge - edge % BLOCK for edge in SIZE]
+    _hide_warnings()
     plotter = pyvista.Plotter(off_screen=True, window_size=size)
     with reporting_disk(out):
         Path(out).parent.mkdir(parents=True, exist_ok=True)
@@ -185,6 +187,14 @@ def _look(plotter: Any, bounds: Bounds, view: str) -> None:
     plotter.reset_camera(bounds=np.column_stack(bounds).ravel().tolist())
     plotter.camera.zoom(CLOSER)
     plotter.show_axes()
+
+
+def _hide_warnings() -> None:
+    """Hide VTK's warning that there is no screen: views are drawn off the screen."""
+    # Start-up: only views in three dimensions need it.
+    from vtkmodules.vtkCommonCore import vtkLogger
+
+    vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_ERROR)
 
 
 def _fill(

@@ -99,9 +99,9 @@ def test_advice_says_who_should_get_what_and_how_the_share_is_known():
     waits, text = sentences(advised)
     assert waits == "Waits: fast 80 s for slow"
     assert text == (
-        "Advice for 4 cores: slow 3 threads instead of 1 thread (serial share 0.1, planned), fast "
-        "1 thread instead of 3 threads (serial share 0.2, measured): 36 s of computing instead of "
-        "90 s (Amdahl's law)"
+        "Advice for 4 cores: slow 3 threads instead of 1 thread (components.slow.threads; serial "
+        "share 0.1, planned), fast 1 thread instead of 3 threads (components.fast.threads; serial "
+        "share 0.2, measured): 36 s of computing instead of 90 s (Amdahl's law)"
     )
     best = {"slow": Load(36.0, 3, 0.1), "fast": Load(10.0)}
     text = sentences(advice(AT_ONCE, best, 4))[-1]
@@ -114,7 +114,10 @@ def test_ranks_are_kept_and_their_threads_are_advised():
     assert (row["advised_ranks"], row["advised_threads"]) == (2, 4)
     assert "wide 2 ranks of 4 threads instead of 2 ranks of 1 thread" in sentences(advised)[-1]
     lone = advice(Stage(("wide",), False), {"wide": Load(50.0, 1, 0.05, divisible=True)}, 8)
-    assert "wide 8 threads or 8 ranks instead of 1 thread" in sentences(lone)[-1]
+    assert (
+        "wide 8 threads or 8 ranks instead of 1 thread (components.wide.threads or ranks; "
+        in (sentences(lone)[-1])
+    )
     assert loads_of(advised) == {"wide": Load(50.0, 1, 0.05, ranks=2)}
 
 

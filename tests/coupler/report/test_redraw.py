@@ -7,6 +7,7 @@ from quintet.components.shared.geometry.box_faces import CORNERS, FACES
 from quintet.coupler.cli import main
 from quintet.coupler.files.vtkhdf import VtkHdf
 from quintet.coupler.report import picture as drawing
+from quintet.coupler.report import three_views
 from quintet.coupler.report.cut import depth_of_bodies
 from quintet.coupler.report.picture import Picture, draw_run
 from quintet.coupler.report.view_drawing import _range
@@ -64,6 +65,15 @@ def test_a_ball_under_water_is_seen(folder, drawn_figures):
     assert order(ball) > order(water), "bodies are drawn after particles"
     assert len(water.get_offsets()) == np.count_nonzero(POINTS[:, 1] >= 0.25)
     assert "particles in front of y = 0.25 m left out" in drawn_figures[0].get_suptitle()
+
+
+def test_titles_of_three_views_fit_above_narrow_panels(folder, monkeypatch):
+    figures = []
+    monkeypatch.setattr(three_views, "save", lambda figure, out: figures.append(figure))
+    three_views.draw_three_views(folder, folder / "a.png")
+    titles = [panel.get_title() for panel in _panels(figures[0])]
+    assert titles[0] == "side view\nparticles in front of y\n= 0.25 m left out"
+    assert max(len(line) for title in titles for line in title.split("\n")) <= 24
 
 
 def test_a_point_in_front_of_the_middle_stays(folder):

@@ -96,8 +96,9 @@ def test_the_camera_sees_all_that_moves_and_walls_that_are_near():
     assert low.tolist() == [-rim, -rim, -1.0] and high.tolist() == [rim, rim, 1.0]
 
 
-def test_a_run_is_drawn_in_three_dimensions(folder):
+def test_a_run_is_drawn_in_three_dimensions(folder, capfd):
     assert exit_status(folder, "--3d", "--times", "0,0.2", "--colour", "water.pressure") == 0
+    assert "X server" not in capfd.readouterr().err
     pixels = pyvista.read(folder / "drawn-3d.png")
     wide, tall, _ = pixels.dimensions
     assert (wide, tall) == (2 * views3d.SIZE[0], views3d.SIZE[1])
