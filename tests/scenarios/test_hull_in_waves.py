@@ -1,6 +1,7 @@
 """A hull in waves: it floats beside a piston at rest, and answers waves as linear theory says."""
 
 import math
+import textwrap
 from collections.abc import Callable
 from pathlib import Path
 
@@ -8,6 +9,7 @@ import numpy as np
 import pytest
 import trimesh
 
+import quintet
 from quintet.components.sph_fluid.setup.wave_theory import wave_number
 from quintet.coupler.files.recording import Recording
 from quintet.coupler.scene.read import load
@@ -56,22 +58,45 @@ def test_the_hull_begins_at_its_draught() -> None:
     assert keel + draught == pytest.approx(response.DEPTH, abs=1e-4)
 
 
-def test_the_scene_of_the_manual_can_be_read(tmp_path: Path) -> None:
-    """From an STL in mm to a hull at its draught, by the steps in scenarios/README.md."""
+def test_the_steps_of_the_manual_lead_to_a_hull_at_its_draught(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """From an STL in mm that stands on its bow, its keel along +y, as scenarios/README.md says."""
     text = (Path(response.__file__).parents[1] / "README.md").read_text()
     steps = text.split("### From an STL to the first picture")[1]
     (tmp_path / "my_hull.toml").write_text(steps.split("```toml\n")[1].split("```")[0])
     mesh = trimesh.load_mesh(hull.FILE)
     mesh.apply_scale(1000.0)
+    axes = np.eye(4)
+    axes[:3, :3] = [[0.0, -1.0, 0.0], [0.0, 0.0, -1.0], [1.0, 0.0, 0.0]]  # x to z, -z to y
+    mesh.apply_transform(axes)
     mesh.export(tmp_path / "hull.stl")
-    component = load(str(tmp_path / "my_hull.toml")).components["hull"]
-    (body,) = component.params["bodies"]
-    assert component.planned is not None
-    (note,) = component.planned.notes
-    assert note.startswith("hull.stl is 0.48 x 0.24 x 0.16 m, encloses 0.01225 m3 and has 6.74 kg")
-    corners = body["scale"] * np.asarray(mesh.triangles, np.float64)
-    draught = hull.rest(corners, body["mass"] / (1e-9 * mesh.volume))[0]
-    assert body["origin"][2] + corners[:, :, 2].min() + draught == pytest.approx(0.42, abs=1e-3)
+    assert mesh.extents == pytest.approx([240.0, 160.0, 480.0], rel=1e-5)
+    monkeypatch.chdir(tmp_path)
+    exec(steps.split("```py\n")[1].split("```")[0].replace("# hull.apply", "hull.apply"), {})
+    assert capsys.readouterr().out == (
+        "closed, outwards: True length, beam, depth [0.48 0.24 0.16] m\n"
+        "volume 0.01225 m3, its centre at 59% of the depth\n"
+        "of 6.74 kg: draught 0.1038 m, GM 0.023 m\n"
+        "at a draught of 0.1 m: 6.38 kg\n"
+    )
+    check = str(quintet.check("my_hull.toml"))
+    assert (
+        "note of hull: hull_m.stl is 0.48 x 0.24 x 0.16 m, encloses 0.01225 m3 and has 6.74 kg"
+    ) in check
+    assert (
+        "note of hull: bodies[0] weighs 6.74 kg and stands in 6.738 kg of water: without turning, "
+        "it floats where it is\n"
+    ) in check
+
+
+def test_the_wave_length_of_the_manual_is_that_of_the_scene(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    text = (Path(response.__file__).parents[1] / "README.md").read_text()
+    steps = text.split("### From an STL to the first picture")[1]
+    exec(textwrap.dedent(steps.split("```py\n")[2].split("```")[0]), {})
+    assert capsys.readouterr().out.startswith("length 2.4327")
 
 
 @pytest.mark.full
