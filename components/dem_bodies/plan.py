@@ -11,6 +11,7 @@ from quintet.components.dem_bodies.shapes.flotation import flotation_notes, stil
 from quintet.components.dem_bodies.shapes.placement import cover
 from quintet.components.dem_bodies.shapes.rigid_body import RigidBody
 from quintet.components.dem_bodies.shapes.solid import is_ball, solids
+from quintet.components.shared.geometry.shapes import Mesh
 from quintet.interfaces.component import Fields
 from quintet.interfaces.manifest import Plan
 
@@ -48,8 +49,10 @@ def _mesh_note(body: RigidBody) -> str:
     if mass is None:
         assert body.density is not None
         mass = body.density * shape.volume
+    is_turned = isinstance(body.geometry, Mesh) and body.geometry.solid.turned
+    turned = "; all its triangles look inwards, and were turned" if is_turned else ""
     size, place = " x ".join(f"{x:.4g}" for x in shape.size), body.position
     return (
         f"{Path(body.file).name} is {size} m, encloses {shape.volume:.4g} m3 and has {mass:.4g} "
-        f"kg; its centre of mass is at ({', '.join(f'{x:.4g}' for x in place)}) m"
+        f"kg; its centre of mass is at ({', '.join(f'{x:.4g}' for x in place)}) m{turned}"
     )

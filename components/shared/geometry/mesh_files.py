@@ -26,6 +26,7 @@ class Solid(NamedTuple):
     volume: float  # m3
     centre: Array  # (3,) m, of mass
     inertia: Array  # (3, 3) m5, about it, at unit density
+    turned: bool = False  # whether all triangles of the file look inwards
 
 
 def read(file: str, scale: float) -> Solid:
@@ -51,7 +52,8 @@ def surface(path: Path, scale: float) -> Solid:
         ) from error
     if not (mesh.is_watertight and mesh.is_winding_consistent):
         raise ValueError(f"file {path.name} {wrong_edges(mesh)}")
-    if mesh.volume < 0.0:
+    looks_inwards = bool(mesh.volume < 0.0)
+    if looks_inwards:
         mesh.invert()
     corners = np.asarray(mesh.triangles, np.float64)
     _require_simple(path.name, corners)
@@ -60,6 +62,7 @@ def surface(path: Path, scale: float) -> Solid:
         scale**3 * float(mesh.volume),
         scale * np.asarray(mesh.center_mass),
         scale**5 * np.asarray(mesh.moment_inertia),
+        looks_inwards,
     )
 
 

@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 import trimesh
-from dem_scenes import FLOOR, NOTHING, build, material, mistakes, run
+from dem_scenes import FLOOR, NOTHING, build, material, mistakes, params, run
 
 from quintet.components.dem_bodies.params import DemBodiesParams
+from quintet.components.dem_bodies.plan import plan
 from quintet.components.dem_bodies.shapes.agglomerate import agglomerate
 from quintet.components.dem_bodies.state import DEEPEST_PAIR, ELASTIC_ENERGY
 from quintet.components.shared.geometry.mesh_files import voxels
@@ -198,6 +199,18 @@ def test_what_is_wrong_with_a_file_is_told(files):
     }  # fmt: skip
     for sentence, wrong_body in wrong_bodies.items():
         assert sentence in " ".join(mistakes([wrong_body])), (sentence, mistakes([wrong_body]))
+
+
+@pytest.mark.parametrize("inwards", [False, True])
+def test_a_surface_that_is_inside_out_is_turned_with_a_note(files, inwards):
+    cube = trimesh.creation.box((EDGE,) * 3)
+    if inwards:
+        cube.invert()
+    cube.export(files / "some.ply")
+    (note,) = plan(params([body(files / "some.ply")])).notes
+    volume = f"encloses {EDGE**3:.4g} m3"
+    assert volume in note
+    assert note.endswith("; all its triangles look inwards, and were turned") == inwards
 
 
 @pytest.mark.parametrize(
