@@ -40,8 +40,8 @@ class DeviceRanks(DevicePart):
         assert isinstance(ranks, SeveralRanks)
         if self._domain is not domain:
             self._domain = domain
-            self._advanced = Rows(ranks.exchanged(domain), self.state)
-            self._boundaries = Rows(ranks.exchanged_boundaries(), self.state)
+            self._advanced = ExchangedRows(ranks.exchanged(domain), self.state)
+            self._boundaries = ExchangedRows(ranks.exchanged_boundaries(), self.state)
 
     def finish_stage(self) -> None:
         """Bring the states that other ranks advanced, where this rank needs them."""
@@ -58,7 +58,7 @@ class DeviceRanks(DevicePart):
             self._boundaries, lambda: ranks.exchange_boundaries(self.gas.fluxes.primitive)
         )
 
-    def _exchange(self, rows: "Rows", exchange: Callable[[], None]) -> None:
+    def _exchange(self, rows: "ExchangedRows", exchange: Callable[[], None]) -> None:
         """Copy the rows that are sent to the host, and those that are received to the device."""
         primitive, state = self.gas.fluxes.primitive, self.state
         primitive[rows.exchanged.sent] = rows.get(state.primitive)
@@ -67,7 +67,7 @@ class DeviceRanks(DevicePart):
         self._changed.put(state.primitive, received, primitive[received])
 
 
-class Rows:
+class ExchangedRows:
     """Rows that a rank sends and receives.
 
     Parameters
