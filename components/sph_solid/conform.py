@@ -112,6 +112,13 @@ def on_devices(
             device="opencl",
         ),
         ConformCase(
+            "quarter, neighbours of the start, OpenCL",
+            {**BLOCK, "symmetry": planes, "total_lagrangian": True},
+            dt=STEP,
+            still=False,  # F at rest is one to rounding, which is 1e-6 Pa of steel
+            device="opencl",
+        ),
+        ConformCase(
             "rings, OpenCL",
             {**BLOCK, "dimensions": 2, "axisymmetric": True},
             dt=STEP,

@@ -17,6 +17,36 @@ from quintet.components.sph_solid.state import Array, Whole
 TINY = 1e-12  # of the spacing: two in one place are pushed nowhere
 
 
+@njit(inline="always")
+def is_touching(square, spacing):  # type: ignore[no-untyped-def]
+    """Whether two at a distance, of which this is the square [m2], push each other off."""
+    return TINY * spacing * spacing <= square < spacing * spacing
+
+
+@njit(inline="always")
+def stiffness(density, sound):  # type: ignore[no-untyped-def]
+    """ρ₀ c² [Pa]."""
+    return density * sound**2
+
+
+@njit(inline="always")
+def contact_force(offset, square, stiff, volumes, spacing):  # type: ignore[no-untyped-def]
+    """Force [N] on i, of x_i - x_j [m], its square, ½ (ρ₀_i c_i² + ρ₀_j c_j²) [Pa] and V_i V_j."""
+    dx, dy, dz = offset
+    r = math.sqrt(square)
+    push = stiff * math.sqrt(volumes) * (spacing - r) / (spacing * spacing)
+    return push * dx / r, push * dy / r, push * dz / r
+
+
+@njit(inline="always")
+def plane_force(apart, stiff, spacing):  # type: ignore[no-untyped-def]
+    """Force [N] off a plane, of the distance [m] to the own image and ρ₀ c² V [J].
+
+    Half the energy of the pair is the particle's own, and half its image's.
+    """
+    return stiff * (spacing - apart) / (spacing * spacing)
+
+
 @njit(**EXACT)
 def push_apart(
     pairs: Whole, place: Array, motion: Array, density: Array, spacing: float, forces: Forces
@@ -42,12 +72,11 @@ def push_apart(
         i, j = pairs[q, 0], pairs[q, 1]
         dx, dy, dz = place[i, 0] - place[j, 0], place[i, 1] - place[j, 1], place[i, 2] - place[j, 2]
         square = dx * dx + dy * dy + dz * dz
-        if square >= spacing * spacing or square < TINY * spacing * spacing:
+        if not is_touching(square, spacing):
             continue
-        r = math.sqrt(square)
-        stiff = 0.5 * (density[i] * motion[i, 3] ** 2 + density[j] * motion[j, 3] ** 2)
-        push = stiff * math.sqrt(place[i, 3] * place[j, 3]) * (spacing - r) / (spacing * spacing)
-        fx, fy, fz = push * dx / r, push * dy / r, push * dz / r
+        stiff_i, stiff_j = stiffness(density[i], motion[i, 3]), stiffness(density[j], motion[j, 3])
+        stiff, volumes = 0.5 * (stiff_i + stiff_j), place[i, 3] * place[j, 3]
+        fx, fy, fz = contact_force((dx, dy, dz), square, stiff, volumes, spacing)
         power = fx * (motion[i, 0] - motion[j, 0]) + fy * (motion[i, 1] - motion[j, 1])
         power += fz * (motion[i, 2] - motion[j, 2])
         per_i, per_j = 1.0 / (density[i] * place[i, 3]), 1.0 / (density[j] * place[j, 3])
@@ -86,9 +115,8 @@ def push_off_plane(
         apart = 2.0 * inward * (place[i, axis] - position)
         if apart >= spacing:
             continue
-        # Half the energy of the pair is the particle's own, and half its image's.
-        stiff = density[i] * motion[i, 3] ** 2 * place[i, 3]
-        push = inward * stiff * (spacing - apart) / (spacing * spacing)
+        stiff = stiffness(density[i], motion[i, 3]) * place[i, 3]
+        push = inward * plane_force(apart, stiff, spacing)
         per = 1.0 / (density[i] * place[i, 3])
         acceleration[i, axis] += push * per
         heating[i] -= push * motion[i, axis] * per

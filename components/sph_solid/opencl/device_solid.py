@@ -15,9 +15,9 @@ from quintet.components.sph_solid.component import LOAD, SphSolid
 from quintet.components.sph_solid.diagnostics import failure
 from quintet.components.sph_solid.glue import add_work
 from quintet.components.sph_solid.judgement import ENERGY_EVERY
+from quintet.components.sph_solid.opencl.features import has_device_sums
 from quintet.components.sph_solid.opencl.refusal import refuse_what_needs_the_processor
 from quintet.components.sph_solid.opencl.stepping import Stepping
-from quintet.components.sph_solid.pair_sums import CurrentSums
 from quintet.components.sph_solid.params import SphSolidParams
 from quintet.components.sph_solid.ports import SHOWS
 from quintet.components.sph_solid.ranks.one import OneRank
@@ -44,16 +44,18 @@ class DeviceSolid(DeviceComponent):
         self._refuse_other_parts(resources.device)
         host, threads = self.host, resources.threads
         laws = host.materials.laws
-        self.stepping = Stepping(device, threads, host.law, laws, host.lists, params.gravity)
+        lists, sums = host.lists, host.sums
+        self.stepping = Stepping(device, threads, host.law, laws, lists, sums, params.gravity)
         self._put()
 
     def _refuse_other_parts(self, device: str) -> None:
         """Refuse parts that only a step on the processor calls."""
         host = self.host
-        pairs = ((host.sums, CurrentSums), (host.all_ranks, OneRank))
-        other_parts = [
-            type(part).__name__ for part, expected in pairs if type(part) is not expected
-        ]
+        known = (
+            (host.sums, has_device_sums(host.sums)),
+            (host.all_ranks, type(host.all_ranks) is OneRank),
+        )
+        other_parts = [type(part).__name__ for part, is_known in known if not is_known]
         refuse_parts(other_parts, device, "bodies")
 
     def take(self, fields: Fields) -> None:
@@ -75,8 +77,10 @@ class DeviceSolid(DeviceComponent):
             host.judge.note(state, mass, host.sums, gravity, host.all_ranks, None)
         add_work(state, dt)
         self._is_read = False
-        spread = host.lists.spread(*stepping.kick(dt))
-        if stepping.may_miss(state, spread, dt):
+        low, high = stepping.kick(dt)
+        if stepping.pairs.is_unstable(low, high):
+            raise self._failure(dt)
+        if stepping.may_miss(state, low, high, dt):
             self._search(dt)
         end = stepping.finish(dt)
         state.bound = end.bound
@@ -106,7 +110,7 @@ class DeviceSolid(DeviceComponent):
 
     def _put(self) -> None:
         """Copy the host's state to the device."""
-        self.stepping.rows.put(self.host.state)
+        self.stepping.put(self.host.state)
         self._is_read = True
 
     def _read(self) -> None:

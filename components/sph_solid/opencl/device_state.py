@@ -48,8 +48,12 @@ class DeviceState:
         self._gather, self._survey, self._fill = kernels.gather, kernels.survey, kernels.fill
         self._note_places, self._find_not_finite = kernels.note_places, kernels.find_not_finite
 
-    def put(self, state: State) -> None:
-        """Copy a state to the device, and make the lists that it had."""
+    def put(self, state: State, group: Array | None = None) -> None:
+        """Copy a state to the device, and make the lists that it had.
+
+        Until the next step each row of `place` then has the place in these lists, and the number
+        (n,) of a group if there are such numbers.
+        """
         queue, self.count = self.queue, state.particles
         self.arrays = {name: DeviceArray.of(queue, getattr(state, name)) for name in IN_ROWS}
         self.spare = {
@@ -66,6 +70,8 @@ class DeviceState:
         self.pulled = DeviceArray.of(queue, state.pulled)
         place = np.zeros(rows)
         place[:, :3] = state.reference
+        if group is not None:
+            place[:, 3] = group
         self.place, self.motion = DeviceArray.of(queue, place), DeviceArray(queue, rows)
         low, high = state.reference.min(axis=0), state.reference.max(axis=0)
         grid = grid_between(low, high, state.reach)
@@ -124,10 +130,13 @@ class DeviceState:
             self.take_rows(key, rows, DeviceArray(self.queue, (self.count, 4)))
             for rows in (self.place, self.motion)
         )
-        count = np.int32(self.count)
-        run(self.queue, self._note_places, self.count, count, self.place, self.reference)
+        self.note_places(self.reference)
         points = self.reference.get() if self.images.mirrors else np.zeros((0, 3))
         self._list(points, state.reach, grid, key)
+
+    def note_places(self, target: DeviceArray) -> None:
+        """Write the present places of particles (n, 3) m."""
+        run(self.queue, self._note_places, self.count, np.int32(self.count), self.place, target)
 
     def take_rows(
         self, key: DeviceArray, source: DeviceArray, target: DeviceArray, base: int = 0

@@ -22,7 +22,7 @@ __kernel void mirror_stress(
     const int from = WIDTH * root[k], to = WIDTH * (count + k);
     const double4 s = sign[k];
     const double xy = s.x * s.y, yz = s.y * s.z, zx = s.z * s.x;
-#ifdef CORRECTED
+#ifdef NINE_NUMBERS
     stress[to] = stress[from] * (double4)(1, xy, zx, xy);
     stress[to + 1] = stress[from + 1] * (double4)(1, yz, zx, yz);
     stress[to + 2] = stress[from + 2];

@@ -45,7 +45,9 @@ __kernel void advance(
     const Solid law = laws[kind];
     const tuple_9r m = nine_of(gradients, i);
     const double eta = density_ratio[i], trace = trace_of(m);
-#ifdef CORRECTED
+#ifdef REFERENCE
+    const tuple_2r scales = corrected_scales(eta, trace, dt);
+#elif defined(CORRECTED)
     const tuple_6r b = six_of(corrections, i);
     const tuple_2r scales = b.f0 != 0 ? corrected_scales(eta, trace, dt)
                                       : plain_scales(eta, trace, dt);
@@ -78,8 +80,8 @@ __kernel void advance(
     stress[3 * i + 1] = (double4)(n.f4, n.f5, n.f6, n.f7);
     stress[3 * i + 2] = (double4)(n.f8, law.density * now, law.density, 0);
 #else
-    stress[2 * i] = (double4)(t.f0, t.f1, t.f2, t.f3);
-    stress[2 * i + 1] = (double4)(t.f4, t.f5, law.density * now, law.density);
+    stress[WIDTH * i] = (double4)(t.f0, t.f1, t.f2, t.f3);
+    stress[WIDTH * i + 1] = (double4)(t.f4, t.f5, law.density * now, law.density);
 #endif
     const double3 u = vload3(i, velocity), at = vload3(i, position) + dt * u;
     vstore3(at, i, position);

@@ -29,34 +29,49 @@ from quintet.components.sph_solid.neighbours import WIDER
 HERE = Path(__file__).parent
 TWO, THREE, NINE = ((0.0,) * count for count in (2, 3, 9))
 SIX = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-WIDTHS = {True: 3, False: 2}  # rows of four numbers of the stress, with corrected gradients or not
 
 
-def width(law: PairLaw) -> int:
+def has_nine(law: PairLaw, keeps: bool) -> bool:
+    """Whether the tensors of particles have nine numbers, and not the six of symmetric ones."""
+    return keeps or law.corrected is not None
+
+
+def width(law: PairLaw, keeps: bool) -> int:
     """How many rows of four numbers the stress of a particle has."""
-    return WIDTHS[law.corrected is not None]
+    return 3 if has_nine(law, keeps) else 2
 
 
-def source(law: PairLaw, solid: Solid, lanes: int, rings: bool = False) -> str:
+def source(law: PairLaw, solid: Solid, lanes: int, rings: bool = False, keeps: bool = False) -> str:
     """All kernels of a step, in double precision.
 
-    `solid` is the law of any of the materials; pairs are summed by so many lanes at once; `rings`
-    tells whether the bodies are axisymmetric.
+    Parameters
+    ----------
+    law : PairLaw
+    solid : Solid
+        Law of any of the materials.
+    lanes : int
+        How many pairs are summed at once.
+    rings : bool
+        Whether the bodies are axisymmetric.
+    keeps : bool
+        Whether neighbours are those of the start.
     """
     program = Program("double", lanes)
     search = cells.source(program)
     names = [
         f"#define LANES {lanes}",
-        f"#define WIDTH {width(law)}",
+        f"#define WIDTH {width(law, keeps)}",
+        *(["#define NINE_NUMBERS"] if has_nine(law, keeps) else []),
         *(["#define CORRECTED"] if law.corrected is not None else []),
         *_of_pairs(program, law),
+        *(_of_start(program, law) if keeps else []),
         *_of_points(program, solid._replace(isentrope=None)),  # type: ignore[arg-type]
         *(_of_rings(program) if rings else []),
         named(program, "meets", meets, THREE, THREE, 0.0, 0.0),
     ]
     shared = kernels("lanes", "gather", "sums")
-    of_solid = kernels("rows", "images", "motion", "material", "pairs", folder=HERE)
-    of_solid += kernels("rings", folder=HERE) if rings else []
+    sums = ("reference", "touching") if keeps else ("pairs", "rings") if rings else ("pairs",)
+    of_solid = kernels("rows", "images", "motion", "material", *sums, folder=HERE)
     return "\n".join([program.text, *names, search, *shared, *of_solid])
 
 
@@ -95,6 +110,29 @@ def _of_points(program: Program, solid: Solid) -> list[str]:
         named(program, "sound_speed", laws.sound_speed, point, solid),
         named(program, "divided_stress", laws.divided_stress, SIX, 0.0, 0.0),
         named(program, "corrected_stress", laws.corrected_stress, SIX, 0.0, SIX),
+    ]
+
+
+def _of_start(program: Program, law: PairLaw) -> list[str]:
+    """Laws of neighbours of the start, and of contact."""
+    # Left out of scenes whose neighbours change.
+    from quintet.components.sph_solid.kernels import reference_laws as start
+    from quintet.components.sph_solid.kernels import touching
+
+    lanes, of_two = (LANES,) * 3, (0.0, 0.0)
+    push = (*(LANES,) * 7, 0.0, law)
+    return [
+        "#define REFERENCE",
+        named(program, "deformation", start.deformation, NINE, SIX, law, returns="Deformation"),
+        named(program, "rate_of_deformation", start.rate_of_deformation, NINE, SIX, NINE),
+        named(program, "nominal_stress", start.nominal_stress, SIX, 0.0, NINE, SIX),
+        named(program, "along", start.along, (LANES,) * 9, lanes),
+        named(program, "approach", start.approach, LANES, LANES, law),
+        named(program, "push_less_drag", start.push_less_drag, *push),
+        named(program, "is_touching", touching.is_touching, *of_two),
+        named(program, "stiffness", touching.stiffness, *of_two),
+        named(program, "contact_force", touching.contact_force, THREE, *(0.0,) * 4),
+        named(program, "plane_force", touching.plane_force, *(0.0,) * 3),
     ]
 
 

@@ -12,7 +12,9 @@ from quintet.components.shared.opencl.types import bytes_of
 from quintet.components.sph_solid.laws import PairLaw
 from quintet.components.sph_solid.neighbours import FEW, SolidLists
 from quintet.components.sph_solid.opencl.device_state import DeviceState
+from quintet.components.sph_solid.opencl.features import device_sums
 from quintet.components.sph_solid.opencl.programs import source, width
+from quintet.components.sph_solid.pair_sums import PairSums
 from quintet.components.sph_solid.state import Array, State
 from quintet.interfaces.params import Vector
 
@@ -21,6 +23,7 @@ ADVANCED = (
     "heating", "deviator", "density_ratio", "pressure", "energy", "strain", "temperature", "damage",
     "failed", "sound", "position", "velocity", "acceleration",
 )  # fmt: skip
+ENDED = "velocity", "acceleration", "heating", "energy"
 
 
 class StepEnd(NamedTuple):
@@ -42,26 +45,30 @@ class Stepping:
     materials : list of Solid
     lists : SolidLists
         Of the host: planes of symmetry, and how far pairs act.
+    pair_sums : PairSums
+        Of the host.
     gravity : Vector, m/s2
     """
 
     def __init__(
         self, device: Device, threads: int, law: PairLaw, materials: list[Solid],
-        lists: SolidLists, gravity: Vector,
+        lists: SolidLists, pair_sums: PairSums, gravity: Vector,
     ) -> None:  # fmt: skip
         self.queue, self.lists = device.queue(threads), lists
         lanes = LANES_OF_PROCESSORS if device.is_processor else 1
-        kernels = build(self.queue, source(law, materials[0], lanes, lists.is_axisymmetric))
+        rings, keeps = lists.is_axisymmetric, lists.are_for_good
+        kernels = build(self.queue, source(law, materials[0], lanes, rings, keeps))
         self.rows = DeviceState(
-            self.queue, kernels, lists.images.planes, lists.mirrors, width(law),
-            device.is_processor, law.smoothing.length if lists.is_axisymmetric else 0.0,
+            self.queue, kernels, lists.images.planes, lists.mirrors, width(law, keeps),
+            device.is_processor, law.smoothing.length if rings else 0.0,
         )  # fmt: skip
+        of_pairs = bytes_of(law, np.float64)
+        self.pairs = device_sums(self.queue, kernels, of_pairs, pair_sums, lists)
         self._sums = Sums(self.queue, kernels, device.is_processor)
         self._kick, self._finish, self._advance = kernels.kick, kernels.finish, kernels.advance
-        self._gradients, self._accelerations = kernels.velocity_gradients, kernels.accelerations
         self._displacements, self._mark_fast = kernels.displacements, kernels.mark_fast
         self._meet_few = kernels.meet_few
-        self._law, self._gravity = bytes_of(law, np.float64), np.array([*gravity, 0.0])
+        self._gravity = np.array([*gravity, 0.0])
         self._laws, self._tables, self._table_start = self._of_materials(materials)
         planes = [(plane.axis, plane.position, plane.inward, 0.0) for plane in lists.mirrors]
         self._planes = DeviceArray.of(self.queue, np.array(planes).reshape(-1, 4))
@@ -77,6 +84,12 @@ class Stepping:
         arrays = (numbers, np.concatenate(tables), start)
         return tuple(DeviceArray.of(self.queue, array) for array in arrays)
 
+    def put(self, state: State) -> None:
+        """Copy a state to the device, and make the lists that it had."""
+        group = self.lists.group(state) if self.lists.are_for_good else None
+        self.rows.put(state, group)
+        self.pairs.make(self.rows, state)
+
     def kick(self, dt: float) -> tuple[Array, Array]:
         """Bring velocities and places to the middle of a step of dt [s].
 
@@ -87,15 +100,18 @@ class Stepping:
         run(
             self.queue, self._kick, rows.count, np.int32(rows.count), np.float64(dt),
             arrays["glue"], rows.active, rows.pulled, *(arrays[name] for name in names),
-            rows.reference, rows.place, rows.motion, rows.most, rows.least,
+            self.pairs.listed(rows), rows.place, rows.motion, rows.most, rows.least,
         )  # fmt: skip
         low, high = rows.ends()
         return low, high[:3]
 
-    def may_miss(self, state: State, spread: float, dt: float) -> bool:
-        """Whether the lists may lack a pair that acts in a step; as `SolidLists.may_miss`."""
+    def may_miss(self, state: State, low: Array, high: Array, dt: float) -> bool:
+        """Whether the lists may lack a pair that acts in a step; as `SolidLists.may_miss`.
+
+        Displacements, from `low` to `high` (3,) m, are those that `kick` returned.
+        """
         skin = state.reach - self.lists.support
-        if spread <= skin:
+        if not self.pairs.may_miss(low, high) or self.lists.spread(low, high) <= skin:
             return False
         rows, arrays, count = self.rows, self.rows.arrays, np.int32(self.rows.count)
         position, velocity = arrays["position"], arrays["velocity"]
@@ -125,33 +141,20 @@ class Stepping:
     def finish(self, dt: float) -> StepEnd:
         """Advance materials by dt [s], with places and velocities in its middle; end the step."""
         rows, arrays, count = self.rows, self.rows.arrays, np.int32(self.rows.count)
-        lists, duration = rows.lists, np.float64(dt)
-        near = (
-            lists.near, lists.end, lists.row_stride, lists.item_stride, rows.turn, rows.turns,
-            self._law,
-        )  # fmt: skip
-        places = rows.place, rows.motion
+        duration, places = np.float64(dt), (rows.place, rows.motion)
         rows.images.write_rows(*places, rows.count)
-        run(
-            self.queue, self._gradients, rows.count, count, *places, *near, rows.gradient,
-            rows.correction,
-        )  # fmt: skip
+        self.pairs.write_gradients(rows)
         run(
             self.queue, self._advance, rows.count, count, duration, self._laws, self._tables,
             self._table_start, arrays["material"], rows.gradient, rows.correction,
             *(arrays[name] for name in ADVANCED), *places, rows.stress,
         )  # fmt: skip
         rows.images.write_rows(*places, rows.count)
-        rows.images.write_stresses(rows.stress, rows.count)
-        acceleration, heating = arrays["acceleration"], arrays["heating"]
-        run(
-            self.queue, self._accelerations, rows.count, count, *places, rows.stress, *near,
-            acceleration, heating, rows.extremes,
-        )  # fmt: skip
+        self.pairs.write_accelerations(rows)
         run(
             self.queue, self._finish, rows.count, count, duration, self._gravity, self._laws,
             arrays["material"], arrays["volume"], arrays["fixed"], arrays["glue"], rows.active,
-            rows.force, arrays["velocity"], acceleration, heating, arrays["energy"], rows.extremes,
+            rows.force, *(arrays[name] for name in ENDED), rows.extremes, *self.pairs.forces(rows),
         )  # fmt: skip
         bound, failed = rows.cells.greatest(rows.extremes, rows.count)[:2]
         return StepEnd(-float(bound), bool(failed > 0.0))

@@ -1,6 +1,7 @@
 """Small bodies of particles, and the same bodies on the processor and on a device."""
 
 import numpy as np
+import pytest
 
 from quintet.components.sph_solid.params import SphSolidParams
 from quintet.interfaces.component import Resources
@@ -36,6 +37,7 @@ def blocks(materials, velocity, **changes):
 
 
 METALS = ("steel", "aluminium")
+RUBBER = {"density": 1000.0, "youngs_modulus": 1e7, "poissons_ratio": 0.4}
 FAST = blocks(METALS, [-3000.0, 20.0, 10.0])
 CORRECTED = blocks(
     METALS, [-300.0, 20.0, 10.0], kernel_correction=True, symmetry=[{"axis": "y"}, {"axis": "z"}]
@@ -69,6 +71,28 @@ CORRECTED_RINGS = RINGS | {
         },
     ],
 }  # fmt: skip
+# Bodies with the neighbours of the start: rubber that strikes, and meets a plane later; a bar and a
+# plate that move alike, and are one, struck by a block; metal that yields.
+MEETING = blocks(
+    (RUBBER, RUBBER),
+    [-20.0, 1.0, 0.5],
+    symmetry=[{"axis": "z"}, {"axis": "x", "position": -0.0061}],
+)
+JOINED = {
+    "spacing": SPACING,
+    "dimensions": 2,
+    "gravity": [0.0, 0.0, -1e3],
+    "viscosity_linear": 0.2,
+    "bodies": [
+        {"lowest": [0.0, 0.0, 0.0], "highest": [0.08, 1.0, 0.02], "material": RUBBER},
+        {"lowest": [0.02, 0.0, 0.02], "highest": [0.04, 1.0, 0.06], "material": RUBBER},
+        {
+            "lowest": [0.05, 0.0, 0.025], "highest": [0.08, 1.0, 0.045], "material": RUBBER,
+            "velocity": [-10.0, 0.0, -10.0],
+        },
+    ],
+}  # fmt: skip
+YIELDING = blocks(METALS, [-300.0, 20.0, 10.0], total_lagrangian=True)
 READ = {"gauges": [[0.05, 0.0, 0.0]], "levels": [{"body": 0, "place": [0.02, 0.02]}]}
 
 
@@ -99,3 +123,18 @@ def differing(first, second):
     """Names of the arrays of two saved states that have other bits."""
     assert first.keys() == second.keys()
     return [name for name in first if not np.array_equal(first[name], second[name], equal_nan=True)]
+
+
+NAMES = ("position", "velocity", "energy", "strain", "temperature", "damage", "density_ratio")
+
+
+def require_close(processor, device, limit=1e-11):
+    """Require that two solids are alike to a share of the largest numbers."""
+    first, second = processor.save(), device.save()
+    assert first.keys() == second.keys()
+    assert np.array_equal(first["identity"], second["identity"])  # sorted alike
+    assert np.array_equal(first["failed"], second["failed"])
+    assert device.stable_dt() == pytest.approx(processor.stable_dt(), rel=limit)
+    assert {name: difference(first, second, name) for name in NAMES} == pytest.approx(
+        dict.fromkeys(NAMES, 0.0), abs=limit
+    )

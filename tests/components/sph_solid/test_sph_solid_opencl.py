@@ -18,38 +18,27 @@ from device_solids import (
     RINGS,
     TORN,
     advanced,
-    difference,
     differing,
     params_of,
+    require_close,
 )
 
+from quintet.components.sph_solid import component
 from quintet.components.sph_solid.component import SphSolid
+from quintet.components.sph_solid.pair_sums import CurrentSums
 from quintet.components.sph_solid.params import SphSolidParams
 from quintet.interfaces.component import Resources
 from quintet.interfaces.errors import SceneError, StepError
 
 pytest.importorskip("pyopencl")
 from quintet.components.shared.opencl.devices import Device, is_accelerator_there
-from quintet.components.sph_solid.opencl import device_solid, stepping
+from quintet.components.sph_solid.opencl import stepping
 from quintet.components.sph_solid.opencl.device_solid import DeviceSolid
 from quintet.components.sph_solid.opencl.refusal import (
     SUPPORTED,
     limits,
     refuse_what_needs_the_processor,
 )
-
-NAMES = ("position", "velocity", "energy", "strain", "temperature", "damage", "density_ratio")
-
-
-def require_close(processor, device, limit=1e-11):
-    first, second = processor.save(), device.save()
-    assert first.keys() == second.keys()
-    assert np.array_equal(first["identity"], second["identity"])  # sorted alike
-    assert np.array_equal(first["failed"], second["failed"])
-    assert device.stable_dt() == pytest.approx(processor.stable_dt(), rel=limit)
-    assert {name: difference(first, second, name) for name in NAMES} == pytest.approx(
-        dict.fromkeys(NAMES, 0.0), abs=limit
-    )
 
 
 @pytest.mark.parametrize(("table", "steps"), [(FAST, 1000), (CORRECTED, 300), (TORN, 300)])
@@ -184,12 +173,9 @@ def test_a_step_that_fails_names_its_particle(steps):
     assert messages[0] == messages[1]
 
 
-RUBBER = {"density": 1000.0, "youngs_modulus": 1e7, "poissons_ratio": 0.4}
-(STILL, _) = FAST["bodies"]
 REFUSED = {
     "contact_with_faces": FAST | {"contact_with_faces": True},
     "artificial_stress": FAST | {"artificial_stress": 0.3},
-    "total_lagrangian": FAST | {"total_lagrangian": True},
 }
 
 
@@ -207,16 +193,6 @@ def test_what_devices_cannot_compute_is_refused_by_name(key):
         refuse_what_needs_the_processor(params_of(REFUSED[key]), "opencl")
 
 
-def test_elastic_bodies_are_told_why_they_are_refused():
-    params = params_of(FAST | {"bodies": [STILL | {"material": RUBBER}]})
-    with pytest.raises(SceneError) as error:
-        DeviceSolid(params, Resources(device="opencl:0"))
-    assert str(error.value) == (
-        "on device opencl:0, total_lagrangian must be false; found true by default, for all "
-        'materials are elastic. Set it to false, or set device = "cpu".'
-    )
-
-
 def test_what_is_not_finite_is_found_on_the_device():
     device = advanced(DeviceSolid(params_of(FAST), DEVICE), 2)
     device.check()
@@ -229,9 +205,15 @@ def test_what_is_not_finite_is_found_on_the_device():
 
 
 def test_host_parts_without_a_key_are_refused(monkeypatch):
-    monkeypatch.setattr(device_solid, "refuse_what_needs_the_processor", lambda *_: None)
-    with pytest.raises(SceneError, match=r"on device opencl, .* found ReferenceSums\. Set device"):
-        DeviceSolid(params_of(REFUSED["total_lagrangian"]), DEVICE)
+    class OtherSums(CurrentSums):
+        pass
+
+    monkeypatch.setattr(
+        component, "pair_sums", lambda params, team: OtherSums(lambda *_: None, team)
+    )
+    monkeypatch.setattr(SphSolid, "_begin", lambda self: None)
+    with pytest.raises(SceneError, match=r"on device opencl, .* found OtherSums\. Set device"):
+        DeviceSolid(params_of(FAST), DEVICE)
 
 
 def test_a_device_without_double_precision_is_refused(monkeypatch):

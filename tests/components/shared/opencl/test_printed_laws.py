@@ -52,7 +52,8 @@ from quintet.components.sph_fluid.motion import laws as motion
 from quintet.components.sph_fluid.waves import laws as waves
 from quintet.components.sph_solid import laws as solid
 from quintet.components.sph_solid.kernels import azimuthal_images as images
-from quintet.components.sph_solid.kernels import point, sums
+from quintet.components.sph_solid.kernels import point, sums, touching
+from quintet.components.sph_solid.kernels import reference_laws as start
 
 ANY, PART, LARGE = Between(-1.0, 1.0), Between(0.01, 1.0), Between(0.5, 2.0)
 SIX, NINE, TEN = (ANY,) * 6, (ANY,) * 9, (PART,) * 10
@@ -167,6 +168,19 @@ LAWS = [
     Law(images.turned_six, SIX),
     Law(images.turned_nine, (ANY,) * 7),
     Law(solid.times, (NINE, SIX)),
+    Law(start.product, (NINE, NINE)),
+    Law(start.inverse_of, (NINE,)),
+    Law(start.transposed, (NINE,)),
+    Law(start.deformation, (NINE, SIX, SOLID)),
+    Law(start.rate_of_deformation, (NINE, SIX, NINE)),
+    Law(start.nominal_stress, (SIX, PART, NINE, SIX)),
+    Law(start.along, (NINE, vector(1.0))),
+    Law(start.approach, (ANY, PART, SOLID)),
+    Law(start.push_less_drag, (NEAR, NEAR, *(PART,) * 5, 1.0, SOLID)),
+    Law(touching.is_touching, (NEAR, 0.05)),
+    Law(touching.stiffness, (DENSITY, LARGE)),
+    Law(touching.contact_force, (vector(1.0), PART, PART, PART, LARGE)),
+    Law(touching.plane_force, (ANY, PART, PART)),
     Law(state.reference_pressure, (STRAINED[0], METAL)),
     Law(state.fractions, (STRAINED[0], METAL)),
     Law(state.pressure_and_energy, (STRAINED[0], STRAINED[1], Between(-1e-5, 1e-5), METAL)),

@@ -1,0 +1,95 @@
+"""Contact of particles that were no neighbours at the start, on a device; see ../touching.py."""
+
+from typing import Any
+
+import numpy as np
+
+from quintet.components.shared.opencl.arrays import DeviceArray, run
+from quintet.components.shared.opencl.types import bytes_of
+from quintet.components.shared.search.cells import grid_between
+from quintet.components.sph_solid.neighbours import SolidLists
+from quintet.components.sph_solid.opencl.device_state import DeviceState
+from quintet.components.sph_solid.state import Array, State
+from quintet.components.sph_solid.touching import SKIN
+
+FEWEST = 8  # particles that lists have room for at first
+
+
+class DeviceTouching:
+    """Which particles may touch, listed on a device from where they are, and their forces.
+
+    Parameters
+    ----------
+    queue : pyopencl.CommandQueue
+    kernels : pyopencl.Program
+        Of `programs.source`.
+    spacing : float, m
+    lists : SolidLists
+        Planes of symmetry, and the support of pairs.
+    """
+
+    def __init__(self, queue: Any, kernels: Any, spacing: float, lists: SolidLists) -> None:
+        self.queue, self.spacing, self._support = queue, spacing, lists.support
+        self._list, self._touch = kernels.list_touching, kernels.touch
+        planes = [(plane.axis, plane.position, plane.inward, 0.0) for plane in lists.images.planes]
+        self._count_of_planes = len(planes)
+        self._planes = DeviceArray.of(queue, np.array(planes).reshape(-1, 4))
+        self._width = FEWEST
+
+    def make(self, rows: DeviceState, start: DeviceArray, state: State) -> None:
+        """Forget what is near: it is listed in the next step."""
+        self.listed = DeviceArray.of(self.queue, state.position)
+        self._near = DeviceArray(self.queue, (rows.count * self._width,), np.int32)
+        self._end = DeviceArray(self.queue, (rows.count,), np.int32)
+        self._end.clear()
+        self._is_old, self._is_any_near = True, False
+
+    def follow(self, low: Array, high: Array) -> None:
+        """Note whether lists hold, of the least and greatest displacements (3,) m in them."""
+        moved = float(np.linalg.norm(high - low))
+        self._is_old |= not moved < SKIN * self.spacing
+
+    def add(self, rows: DeviceState, start: DeviceArray, heats: DeviceArray) -> None:
+        """Add accelerations (n, 3) m/s2 of contact, and its power to the heating.
+
+        `rows.stress` has rows of nominal stress; `start` (n + images, 4) are places at the start.
+        """
+        if self._is_old:
+            self._renew(rows, start)
+        if not (self._is_any_near or self._count_of_planes):
+            return
+        numbers = np.int32(rows.count), np.float64(self.spacing), np.float64(self._support)
+        run(
+            self.queue, self._touch, rows.count, *numbers, start, rows.place, rows.motion,
+            rows.stress, np.int32(self._count_of_planes), self._planes, self._near, self._end,
+            *self._strides(rows), heats, rows.arrays["heating"],
+        )  # fmt: skip
+
+    def _renew(self, rows: DeviceState, start: DeviceArray) -> None:
+        """List what may touch until particles have come nearer by the skin."""
+        cells, count = rows.cells, rows.count
+        low, high, is_wrong = rows.extremes_of(rows.place)
+        if is_wrong:  # the step will say so
+            return
+        reach = (1.0 + SKIN) * self.spacing
+        grid = grid_between(low, high, reach)
+        key = cells.sorted_keys(rows.place, 0, count, grid)
+        starts = cells.starts(key, 0, count, grid)
+        numbers = np.float64(self._support**2), np.float64(reach * reach)
+        while True:
+            run(
+                self.queue, self._list, count, np.int32(count), rows.place, start, *numbers, key,
+                bytes_of(grid, np.float64), starts, np.int32(self._width), *self._strides(rows),
+                self._near, self._end, rows.most,
+            )  # fmt: skip
+            most = int(cells.greatest(rows.most, count)[0])
+            if most <= self._width:
+                break
+            self._width = most + most // 8
+            self._near = DeviceArray(self.queue, (count * self._width,), np.int32)
+        rows.note_places(self.listed)
+        self._is_old, self._is_any_near = False, most > 0
+
+    def _strides(self, rows: DeviceState) -> tuple[np.int64, np.int64]:
+        by_rows = (self._width, 1) if rows.cells.by_rows else (1, rows.count)
+        return np.int64(by_rows[0]), np.int64(by_rows[1])
