@@ -29,6 +29,12 @@ FACE = {
     "contact_faces.width": np.full(1, 0.05),
     "contact_faces.step": np.full(1, 1e-6),
 }
+ON_FACE = {
+    "contact_faces.position": CORNERS,
+    "contact_faces.velocity": np.zeros((4, 3)),
+    "contact_activity.active": np.ones(1),
+}
+MOVED_FACE = {"contact_faces.position": 1e-5, "contact_faces.velocity": 1.0}
 
 
 def cases() -> tuple[ConformCase, ...]:
@@ -69,12 +75,8 @@ def cases() -> tuple[ConformCase, ...]:
             "block on a face",
             {**BLOCK, "contact_with_faces": True},
             static=FACE,
-            rest={
-                "contact_faces.position": CORNERS,
-                "contact_faces.velocity": np.zeros((4, 3)),
-                "contact_activity.active": np.ones(1),
-            },
-            scale={"contact_faces.position": 1e-5, "contact_faces.velocity": 1.0},
+            rest=ON_FACE,
+            scale=MOVED_FACE,
             dt=STEP,
             smooth=False,  # it touches, or it does not
             forces=("contact_load.force",),
@@ -96,7 +98,7 @@ def cases() -> tuple[ConformCase, ...]:
 def on_devices(
     moving: dict[str, Any], layers: dict[str, Any], rest: dict[str, Any]
 ) -> tuple[ConformCase, ...]:
-    """Blocks on a device, where there is one: at rest, in quarters, rings, struck, and glued."""
+    """Blocks on a device, where there is one: at rest, rings, struck, glued, on a face."""
     # Loads pyopencl where it is installed; these cases alone ask for it.
     from quintet.components.shared.opencl.devices import is_any_there
 
@@ -130,6 +132,18 @@ def on_devices(
             dt=STEP,
             still=False,
             smooth=False,  # it begins to yield
+            device="opencl",
+        ),
+        ConformCase(
+            "block on a face, OpenCL",
+            {**BLOCK, "contact_with_faces": True},
+            static=FACE,
+            rest=ON_FACE,
+            scale=MOVED_FACE,
+            dt=STEP,
+            smooth=False,  # it touches, or it does not
+            forces=("contact_load.force",),
+            activity={"contact_activity.active": ()},
             device="opencl",
         ),
         ConformCase(

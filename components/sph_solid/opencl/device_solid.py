@@ -2,7 +2,8 @@
 
 An `SphSolid` on the host makes the particles, and reads gauges, totals, views, checks and
 snapshots: rows are copied into its state before. Between these, a step copies back only partial
-extremes, 24 kB, and the forces on glued particles.
+extremes, 24 kB, and the forces on glued particles; where particles touch a partner's faces, their
+places and velocities both ways.
 """
 
 from dataclasses import replace
@@ -11,11 +12,12 @@ from quintet.components.shared.opencl.device_component import DeviceComponent
 from quintet.components.shared.opencl.devices import device_of, require_doubles
 from quintet.components.shared.opencl.limits import refuse_parts
 from quintet.components.sph_solid import MANIFEST
-from quintet.components.sph_solid.component import LOAD, SphSolid
+from quintet.components.sph_solid.component import LOAD, REACTION, SphSolid
 from quintet.components.sph_solid.diagnostics import failure
 from quintet.components.sph_solid.glue import add_work
 from quintet.components.sph_solid.judgement import ENERGY_EVERY
 from quintet.components.sph_solid.opencl.features import has_device_sums
+from quintet.components.sph_solid.opencl.partner_faces import kick_by_faces
 from quintet.components.sph_solid.opencl.refusal import refuse_what_needs_the_processor
 from quintet.components.sph_solid.opencl.stepping import Stepping
 from quintet.components.sph_solid.params import SphSolidParams
@@ -24,7 +26,7 @@ from quintet.components.sph_solid.ranks.one import OneRank
 from quintet.interfaces.component import Fields, Keys, Resources
 
 FIRST_DEVICE = Resources(device="opencl")
-FORCES = frozenset({LOAD})  # known on the host after each step
+FORCES = frozenset({LOAD, REACTION})  # known on the host after each step
 
 
 class DeviceSolid(DeviceComponent):
@@ -59,9 +61,10 @@ class DeviceSolid(DeviceComponent):
         refuse_parts(other_parts, device, "bodies")
 
     def take(self, fields: Fields) -> None:
-        """Set which particles are still glued, and their velocities in the coming step."""
+        """Set which particles are still glued, their velocities, and faces in the coming step."""
         state = self.host.state
         if not len(state.active):
+            self.host.take(fields)
             return
         if (fields.get("glue_activity.active", state.active) < state.active).any():
             self._get()  # what is released brings its motion
@@ -74,8 +77,11 @@ class DeviceSolid(DeviceComponent):
         if state.steps % ENERGY_EVERY == 0:
             self._get()
             mass, gravity = host.materials.mass(state), self.params.gravity
-            host.judge.note(state, mass, host.sums, gravity, host.all_ranks, None)
+            touching = host.faces.penalty.numbers if host.faces else None
+            host.judge.note(state, mass, host.sums, gravity, host.all_ranks, touching)
         add_work(state, dt)
+        if host.faces:
+            kick_by_faces(host.faces, stepping.rows, state, self._is_read, dt)
         self._is_read = False
         low, high = stepping.kick(dt)
         if stepping.pairs.is_unstable(low, high):
@@ -102,6 +108,9 @@ class DeviceSolid(DeviceComponent):
             raise self._failure(dt)
         lists.widen(state, spread)
         rows.sort(state)
+        if self.host.faces:  # its rows are those of the host's state
+            self._read()
+            self.host.faces.make(state, self.host.materials)
 
     def _failure(self, dt: float) -> Exception:
         """Say which particle a step of dt [s] failed on."""

@@ -7,7 +7,8 @@ from quintet.components.sph_solid.params import SphSolidParams
 # if a new key is in neither.
 SUPPORTED = frozenset(
     """spacing bodies dimensions axisymmetric smoothing symmetry fixed glued gravity gauges levels
-    courant viscosity_linear viscosity_quadratic kernel_correction total_lagrangian""".split()
+    courant viscosity_linear viscosity_quadratic kernel_correction total_lagrangian
+    contact_with_faces""".split()
 )
 
 
@@ -18,9 +19,7 @@ def refuse_what_needs_the_processor(params: SphSolidParams, device: str) -> None
 
 def limits(params: SphSolidParams) -> dict[str, Limit]:
     """Limits of keys on devices."""
-    faces = params.contact_with_faces
     stress = params.artificial_stress
     return {
-        "contact_with_faces": Limit(str(faces).lower(), faces, "false", "Set it to false"),
         "artificial_stress": Limit(f"{stress:g}", stress > 0.0, "0", "Remove it"),
     }

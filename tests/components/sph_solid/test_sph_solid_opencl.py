@@ -174,7 +174,6 @@ def test_a_step_that_fails_names_its_particle(steps):
 
 
 REFUSED = {
-    "contact_with_faces": FAST | {"contact_with_faces": True},
     "artificial_stress": FAST | {"artificial_stress": 0.3},
 }
 
