@@ -45,5 +45,4 @@ MANIFEST = Manifest(
     bench="quintet.components.sph_solid.bench:cases",
     conform="quintet.components.sph_solid.conform:cases",
     opencl="quintet.components.sph_solid.opencl.device_solid:DeviceSolid",
-    opencl_limits="quintet.components.sph_solid.opencl.refusal:refuse_what_needs_the_processor",
 )

@@ -121,6 +121,12 @@ def on_devices(
             device="opencl",
         ),
         ConformCase(
+            "artificial stress, OpenCL",
+            {**BLOCK, "artificial_stress": 0.3},
+            dt=STEP,
+            device="opencl",
+        ),
+        ConformCase(
             "rings, OpenCL",
             {**BLOCK, "dimensions": 2, "axisymmetric": True},
             dt=STEP,

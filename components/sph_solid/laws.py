@@ -156,6 +156,20 @@ def nearness(r2, law):  # type: ignore[no-untyped-def]
 
 
 @njit(inline="always")
+def repelled(stress, offset, r2, law):  # type: ignore[no-untyped-def]
+    """f⁴ (R_i + R_j)·r_ij [Pa m] of the sum of two artificial stresses, six numbers."""
+    xx, yy, zz, xy, yz, zx = stress
+    dx, dy, dz = offset
+    f = nearness(r2, law)
+    xx, yy, zz, xy, yz, zx = f * xx, f * yy, f * zz, f * xy, f * yz, f * zx
+    return (
+        xx * dx + xy * dy + zx * dz,
+        xy * dx + yy * dy + yz * dz,
+        zx * dx + yz * dy + zz * dz,
+    )
+
+
+@njit(inline="always")
 def inverse(k, law):  # type: ignore[no-untyped-def]
     """Inverse of a symmetric matrix xx yy zz xy yz zx, and its determinant.
 

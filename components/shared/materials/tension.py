@@ -2,43 +2,65 @@
 
 import math
 
-import numpy as np
 from numba import njit
 
 from quintet.components.shared.numba_options import INNER
 
 SWEEPS = 8  # of Jacobi's rotations: it converges quadratically
-PLACES = ((0, 3, 5), (3, 1, 4), (5, 4, 2))  # of the six numbers in a matrix
 
 
 @njit(**INNER)
-def positive_part(tensor, part):  # type: ignore[no-untyped-def]
-    """Write the tensor Σ max(λ, 0) n nᵀ of the eigenvalues and eigenvectors of another.
+def rotation(pp, qq, pq, rp, rq):  # type: ignore[no-untyped-def]
+    """Jacobi's rotation of a symmetric matrix, after which its entry pq is 0.
 
-    By Jacobi's rotations. Both are six numbers, xx yy zz xy yz zx; `part` is an array.
+    Returns
+    -------
+    four floats : the entries pp, qq, rp and rq afterwards
+    two floats : cosine and sine of the angle
     """
-    a, e = np.empty((3, 3)), np.eye(3)
-    for i in range(3):
-        for j in range(3):
-            a[i, j] = tensor[PLACES[i][j]]
+    if pq == 0.0:
+        return pp, qq, rp, rq, 1.0, 0.0
+    half = 0.5 * (qq - pp) / pq
+    t = math.copysign(1.0, half) / (abs(half) + math.sqrt(half * half + 1.0))
+    c = 1.0 / math.sqrt(t * t + 1.0)
+    s = t * c
+    new_pp = c * (c * pp - s * pq) - s * (c * pq - s * qq)
+    new_qq = s * (s * pp + c * pq) + c * (s * pq + c * qq)
+    return new_pp, new_qq, c * rp - s * rq, s * rp + c * rq, c, s
+
+
+@njit(**INNER)
+def rotated_pair(u, v, c, s):  # type: ignore[no-untyped-def]
+    """Two vectors, rotated in their plane by an angle of a cosine and sine."""
+    x, y, z = u
+    p, q, r = v
+    return (c * x - s * p, c * y - s * q, c * z - s * r), (
+        s * x + c * p, s * y + c * q, s * z + c * r,
+    )  # fmt: skip
+
+
+@njit(**INNER)
+def positive_part(tensor):  # type: ignore[no-untyped-def]
+    """Σ max(λ, 0) n nᵀ of the eigenvalues and eigenvectors of a tensor, by Jacobi's rotations.
+
+    Both are six numbers, xx yy zz xy yz zx.
+    """
+    xx, yy, zz, xy, yz, zx = tensor
+    a, b, c = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
     for _ in range(SWEEPS):
-        for p, q in ((0, 1), (1, 2), (0, 2)):
-            if a[p, q] == 0.0:
-                continue
-            half = 0.5 * (a[q, q] - a[p, p]) / a[p, q]
-            t = math.copysign(1.0, half) / (abs(half) + math.sqrt(half * half + 1.0))
-            c = 1.0 / math.sqrt(t * t + 1.0)
-            s = t * c
-            for k in range(3):
-                a[k, p], a[k, q] = c * a[k, p] - s * a[k, q], s * a[k, p] + c * a[k, q]
-                e[k, p], e[k, q] = c * e[k, p] - s * e[k, q], s * e[k, p] + c * e[k, q]
-            for k in range(3):
-                a[p, k], a[q, k] = c * a[p, k] - s * a[q, k], s * a[p, k] + c * a[q, k]
-            a[p, q], a[q, p] = 0.0, 0.0
-    for d in range(6):
-        part[d] = 0.0
-    for k in range(3):
-        pull = max(a[k, k], 0.0)
-        for i in range(3):
-            for j in range(i + 1):
-                part[PLACES[i][j]] += pull * e[i, k] * e[j, k]
+        xx, yy, zx, yz, cosine, sine = rotation(xx, yy, xy, zx, yz)
+        a, b = rotated_pair(a, b, cosine, sine)
+        xx, zz, xy, yz, cosine, sine = rotation(xx, zz, zx, 0.0, yz)
+        a, c = rotated_pair(a, c, cosine, sine)
+        yy, zz, xy, zx, cosine, sine = rotation(yy, zz, yz, xy, 0.0)
+        b, c = rotated_pair(b, c, cosine, sine)
+        yz = 0.0
+    p, q, r = max(xx, 0.0), max(yy, 0.0), max(zz, 0.0)
+    return (
+        p * a[0] * a[0] + q * b[0] * b[0] + r * c[0] * c[0],
+        p * a[1] * a[1] + q * b[1] * b[1] + r * c[1] * c[1],
+        p * a[2] * a[2] + q * b[2] * b[2] + r * c[2] * c[2],
+        p * a[1] * a[0] + q * b[1] * b[0] + r * c[1] * c[0],
+        p * a[2] * a[1] + q * b[2] * b[1] + r * c[2] * c[1],
+        p * a[2] * a[0] + q * b[2] * b[0] + r * c[2] * c[0],
+    )

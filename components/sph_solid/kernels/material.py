@@ -6,11 +6,11 @@ from numba import njit
 
 from quintet.components.shared.materials.equation_of_state import temperature
 from quintet.components.shared.materials.solid import Solid
-from quintet.components.shared.materials.tension import positive_part
 from quintet.components.shared.numba_options import EXACT, FAST
 from quintet.components.sph_solid.kernels.point import (
     Point,
     advanced,
+    artificial_stress,
     corrected_scales,
     corrected_stress,
     divided_stress,
@@ -149,6 +149,6 @@ def write_artificial(first: int, last: int, share: float, stress: Array) -> None
     Gray, Monaghan & Swift, Comput. Methods Appl. Mech. Eng. 190 (2001) 6641.
     """
     for i in range(first, last):
-        positive_part(stress[i, :6], stress[i, 8:14])
-        for d in range(8, 14):
-            stress[i, d] *= -share
+        repels = artificial_stress(six_of(stress, i), share)
+        for d in range(6):
+            stress[i, 8 + d] = repels[d]

@@ -11,6 +11,7 @@ from quintet.components.shared.materials.equation_of_state import (
 )
 from quintet.components.shared.materials.fracture import damage_growth, is_torn
 from quintet.components.shared.materials.strength import returned, turned_and_strained
+from quintet.components.shared.materials.tension import positive_part
 from quintet.components.shared.numba_options import INNER
 from quintet.components.sph_solid.laws import times
 
@@ -161,6 +162,13 @@ def divided_stress(s, pressure, eta):  # type: ignore[no-untyped-def]
     xx, yy, zz, xy, yz, zx = s
     xx, yy, zz = xx - pressure, yy - pressure, zz - pressure
     return per * xx, per * yy, per * zz, per * xy, per * yz, per * zx
+
+
+@njit(inline="always")
+def artificial_stress(tau, share):  # type: ignore[no-untyped-def]
+    """R = -ε σ⁺/η² [Pa] of τ, six numbers, and ε; see `write_artificial`."""
+    xx, yy, zz, xy, yz, zx = positive_part(tau)
+    return -share * xx, -share * yy, -share * zz, -share * xy, -share * yz, -share * zx
 
 
 @njit(inline="always")

@@ -21,7 +21,7 @@ from quintet.components.sph_solid.laws import (
     add_outer,
     inverse,
     inverses,
-    nearness,
+    repelled,
     times,
     viscous_pressure,
 )
@@ -182,16 +182,11 @@ def repulsion(row, tension, k, offset, r2, law):  # type: ignore[no-untyped-def]
 @overload(repulsion, inline="always")
 def _repulsion(row, tension, k, offset, r2, law):  # type: ignore[no-untyped-def]
     def artificial(row, tension, k, offset, r2, law):  # type: ignore[no-untyped-def]
-        dx, dy, dz = offset
-        f = nearness(r2, law)
-        xx, yy = f * (row[8] + tension[k, 8]), f * (row[9] + tension[k, 9])
-        zz, xy = f * (row[10] + tension[k, 10]), f * (row[11] + tension[k, 11])
-        yz, zx = f * (row[12] + tension[k, 12]), f * (row[13] + tension[k, 13])
-        return (
-            xx * dx + xy * dy + zx * dz,
-            xy * dx + yy * dy + yz * dz,
-            zx * dx + yz * dy + zz * dz,
-        )
+        stress = (
+            row[8] + tension[k, 8], row[9] + tension[k, 9], row[10] + tension[k, 10],
+            row[11] + tension[k, 11], row[12] + tension[k, 12], row[13] + tension[k, 13],
+        )  # fmt: skip
+        return repelled(stress, offset, r2, law)
 
     if _has(law, "artificial"):
         return artificial

@@ -18,7 +18,6 @@ from quintet.components.sph_solid.glue import add_work
 from quintet.components.sph_solid.judgement import ENERGY_EVERY
 from quintet.components.sph_solid.opencl.features import has_device_sums
 from quintet.components.sph_solid.opencl.partner_faces import kick_by_faces
-from quintet.components.sph_solid.opencl.refusal import refuse_what_needs_the_processor
 from quintet.components.sph_solid.opencl.stepping import Stepping
 from quintet.components.sph_solid.params import SphSolidParams
 from quintet.components.sph_solid.ports import SHOWS
@@ -38,7 +37,6 @@ class DeviceSolid(DeviceComponent):
     host: SphSolid
 
     def __init__(self, params: SphSolidParams, resources: Resources = FIRST_DEVICE) -> None:
-        refuse_what_needs_the_processor(params, resources.device)
         device = device_of(resources.device)
         require_doubles(device, resources.device)
         self.params, (self.takes, self.gives) = params, self.ports_of(params)

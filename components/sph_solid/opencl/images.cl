@@ -29,6 +29,10 @@ __kernel void mirror_stress(
 #else
     stress[to] = stress[from] * (double4)(1, 1, 1, xy);
     stress[to + 1] = stress[from + 1] * (double4)(yz, zx, 1, 1);
+#ifdef ARTIFICIAL
+    stress[to + 2] = stress[from + 2] * (double4)(1, 1, 1, xy);
+    stress[to + 3] = stress[from + 3] * (double4)(yz, zx, 1, 1);
+#endif
 #endif
 }
 

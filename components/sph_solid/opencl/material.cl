@@ -82,6 +82,11 @@ __kernel void advance(
 #else
     stress[WIDTH * i] = (double4)(t.f0, t.f1, t.f2, t.f3);
     stress[WIDTH * i + 1] = (double4)(t.f4, t.f5, law.density * now, law.density);
+#ifdef ARTIFICIAL
+    const tuple_6r p = artificial_stress(t, ARTIFICIAL);
+    stress[WIDTH * i + 2] = (double4)(p.f0, p.f1, p.f2, p.f3);
+    stress[WIDTH * i + 3] = (double4)(p.f4, p.f5, 0, 0);
+#endif
 #endif
     const double3 u = vload3(i, velocity), at = vload3(i, position) + dt * u;
     vstore3(at, i, position);

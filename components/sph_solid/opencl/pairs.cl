@@ -3,7 +3,7 @@
    CORRECTED is defined where gradients are corrected, RINGS where neighbours are azimuthal images
    of rings: images at both sides cancel along y, and one of the two is listed. A row of stress has
    WIDTH rows of four numbers: six of tau, or nine where gradients are corrected, then rho and
-   rho_0. */
+   rho_0; where ARTIFICIAL is defined six of the artificial stress follow. */
 
 #if LANES == 4
 #define STRESS(k, part) \
@@ -138,7 +138,11 @@ __kernel void accelerations(
     const double far = 4 * law.smoothing.length_;
     tuple_4v sums = {0, 0, 0, 0};
     reals fastest = 0;
-    const tuple_3v no_push = {0, 0, 0};
+#ifdef ARTIFICIAL
+    const double4 p = stress[WIDTH * i + 2], o = stress[WIDTH * i + 3];
+#else
+    const tuple_3v push = {0, 0, 0};
+#endif
     for (int k = 0; k < stop; k += LANES) {
         PAIR;
         const tuple_3v offset = {dx, dy, dz};
@@ -161,7 +165,13 @@ __kernel void accelerations(
         const reals mu = law.smoothing.length_ * max_reals(-dot, (reals)0) * per.f1;
         const reals q = viscous_pressure(mu, u.w + last, per.f2, start * start_j, law);
         fastest = max_reals(fastest, mu);
-        sums = add_force(sums, offset, change, dot, weight, both, q, no_push, law);
+#ifdef ARTIFICIAL
+        const tuple_6v repels = {
+            p.x + STRESS(2, x), p.y + STRESS(2, y), p.z + STRESS(2, z), p.w + STRESS(2, w),
+            o.x + STRESS(3, x), o.y + STRESS(3, y)};
+        const tuple_3v push = repelled(repels, offset, r2, law);
+#endif
+        sums = add_force(sums, offset, change, dot, weight, both, q, push, law);
     }
     const double per_start = 1.0 / start;
     const double3 a =

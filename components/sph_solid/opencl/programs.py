@@ -21,6 +21,7 @@ from quintet.components.sph_solid.laws import (
     add_moments,
     add_outer,
     inverses,
+    repelled,
     stable_step,
     viscous_pressure,
 )
@@ -38,6 +39,8 @@ def has_nine(law: PairLaw, keeps: bool) -> bool:
 
 def width(law: PairLaw, keeps: bool) -> int:
     """How many rows of four numbers the stress of a particle has."""
+    if law.artificial is not None:
+        return 4
     return 3 if has_nine(law, keeps) else 2
 
 
@@ -65,6 +68,7 @@ def source(law: PairLaw, solid: Solid, lanes: int, rings: bool = False, keeps: b
         *(["#define CORRECTED"] if law.corrected is not None else []),
         *_of_pairs(program, law),
         *(_of_start(program, law) if keeps else []),
+        *(_of_tension(program, law) if law.artificial is not None else []),
         *_of_points(program, solid._replace(isentrope=None)),  # type: ignore[arg-type]
         *(_of_rings(program) if rings else []),
         named(program, "meets", meets, THREE, THREE, 0.0, 0.0),
@@ -133,6 +137,16 @@ def _of_start(program: Program, law: PairLaw) -> list[str]:
         named(program, "stiffness", touching.stiffness, *of_two),
         named(program, "contact_force", touching.contact_force, THREE, *(0.0,) * 4),
         named(program, "plane_force", touching.plane_force, *(0.0,) * 3),
+    ]
+
+
+def _of_tension(program: Program, law: PairLaw) -> list[str]:
+    """Laws of the artificial stress."""
+    six, offset = (LANES,) * 6, (LANES,) * 3
+    return [
+        f"#define ARTIFICIAL {law.artificial!r}",
+        named(program, "artificial_stress", laws.artificial_stress, SIX, 0.0),
+        named(program, "repelled", repelled, six, offset, LANES, law),
     ]
 
 

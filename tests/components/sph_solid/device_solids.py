@@ -92,6 +92,9 @@ JOINED = {
         },
     ],
 }  # fmt: skip
+REPELLED = blocks(
+    (RUBBER, RUBBER), [20.0, 1.0, 0.5], artificial_stress=0.3, symmetry=[{"axis": "z"}]
+)
 YIELDING = blocks(METALS, [-300.0, 20.0, 10.0], total_lagrangian=True)
 READ = {"gauges": [[0.05, 0.0, 0.0]], "levels": [{"body": 0, "place": [0.02, 0.02]}]}
 

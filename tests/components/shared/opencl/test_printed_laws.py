@@ -38,7 +38,7 @@ from quintet.components.particle_dynamics.state import Driven
 from quintet.components.shared import elementary, rotations, smoothing
 from quintet.components.shared.contact import laws as contact
 from quintet.components.shared.materials import equation_of_state as state
-from quintet.components.shared.materials import fracture, strength
+from quintet.components.shared.materials import fracture, strength, tension
 from quintet.components.shared.materials.solid import Solid
 from quintet.components.shared.opencl.program import Program
 from quintet.components.shared.opencl.refusal import PrintError
@@ -147,6 +147,7 @@ LAWS = [
     Law(solid.inverses, (NEAR, DENSITY, SOLID)),
     Law(solid.viscous_pressure, (PART, DENSITY, PART, DENSITY, SOLID)),
     Law(solid.nearness, (NEAR, SOLID)),
+    Law(solid.repelled, (SIX, vector(1.0), NEAR, SOLID)),
     Law(solid.inverse, (SIX, SOLID)),
     Law(solid.add_outer, (NINE, vector(1.0), vector(1.0))),
     Law(solid.add_moments, (SIX, vector(1.0), vector(1.0))),
@@ -162,6 +163,11 @@ LAWS = [
     Law(point.sound_speed, (POINT, METAL)),
     Law(point.divided_stress, (SIX, ANY, PART)),
     Law(point.corrected_stress, (SIX, PART, SIX)),
+    Law(point.artificial_stress, (SIX, 0.3)),
+    Law(tension.rotation, (ANY,) * 5),
+    Law(tension.rotation, (ANY, ANY, 0.0, ANY, ANY), name=" of a diagonal matrix"),
+    Law(tension.rotated_pair, (vector(1.0), vector(1.0), ANY, ANY)),
+    Law(tension.positive_part, (SIX,)),
     Law(images.turns_of_pair, (7, True, 40)),
     Law(images.turned_square, (PART, PART, PART, ANY)),
     Law(images.turned_vector, (ANY, ANY, ANY, ANY)),
