@@ -45,4 +45,5 @@ MANIFEST = Manifest(
     bench="quintet.components.sph_solid.bench:cases",
     conform="quintet.components.sph_solid.conform:cases",
     opencl="quintet.components.sph_solid.opencl.device_solid:DeviceSolid",
+    opencl_ranks="quintet.components.sph_solid.ranks.refusal:refuse_what_needs_one_rank",
 )

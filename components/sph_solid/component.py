@@ -191,15 +191,8 @@ class SphSolid(Component):
     def _search(self, dt: float) -> None:
         """Sort particles by their places in the middle of a step of dt [s], and list neighbours."""
         state = self.state
-        self.lists.reflect(state)
-        low, high = extremes(self.all_ranks, state.velocity, state.velocity)
-        spread = dt * self.lists.spread(low, high)
-        middle = state.position + 0.5 * dt * state.velocity
-        wrong = float(self.lists.is_unstable(spread) or not np.isfinite(middle).all())
-        if self.all_ranks.greatest(np.array([wrong]))[0]:
+        if not self.lists.sort(state, dt):
             raise failure(state, self.params, dt, self.all_ranks)
-        self.lists.widen(state, spread)
-        self.all_ranks.sort(state, middle)
         self._list()
         self.rows.fill(state, state.reference, state.failed)
 

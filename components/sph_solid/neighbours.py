@@ -11,7 +11,7 @@ from quintet.components.shared.threads import Team
 from quintet.components.sph_solid.kernels.motion import meets_unlisted
 from quintet.components.sph_solid.method import method
 from quintet.components.sph_solid.params import SphSolidParams
-from quintet.components.sph_solid.ranks.method import Ranks
+from quintet.components.sph_solid.ranks.method import Ranks, extremes
 from quintet.components.sph_solid.state import Array, Rows, State, Whole
 
 # The cost of a step is least with a skin of about this times the root of what particles approach
@@ -107,6 +107,22 @@ class SolidLists:
         arrays = [np.concatenate(part) for part in parts]
         meets = meets_unlisted(np.arange(len(of_all)), *arrays, self.support, skin)
         return bool(self.ranks.greatest(np.array([float(meets)]))[0])
+
+    def sort(self, state: State, dt: float) -> bool:
+        """Sort particles by their places in the middle of a step of dt [s], after reflections.
+
+        False, and nothing is sorted, where no stable step leads to these places.
+        """
+        self.reflect(state)
+        low, high = extremes(self.ranks, state.velocity, state.velocity)
+        spread = dt * self.spread(low, high)
+        middle = state.position + 0.5 * dt * state.velocity
+        wrong = float(self.is_unstable(spread) or not np.isfinite(middle).all())
+        if self.ranks.greatest(np.array([wrong]))[0]:
+            return False
+        self.widen(state, spread)
+        self.ranks.sort(state, middle)
+        return True
 
     def is_unstable(self, spread: float) -> bool:
         """Whether no stable step lets two particles approach each other by so much [m]."""

@@ -67,6 +67,12 @@ class DeviceArray:
                 self.queue, self.memory, source.memory, byte_count=size, **offsets
             )
 
+    def copy_first(self, rows: int, source: "DeviceArray") -> None:
+        """Copy so many rows of an array whose rows are as long, on the device."""
+        size = rows * int(np.prod(self.shape[1:])) * self.dtype.itemsize
+        if size:
+            opencl().enqueue_copy(self.queue, self.memory, source.memory, byte_count=size)
+
     def clear(self) -> None:
         """Write 0 everywhere."""
         size = int(np.prod(self.shape)) * self.dtype.itemsize

@@ -1,5 +1,6 @@
 """The state of bodies in the memory of a device, sorted by cell there, and their neighbours."""
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -12,8 +13,10 @@ from quintet.components.sph_solid.opencl.images import DeviceImages
 from quintet.components.sph_solid.state import OF_PARTICLES, Array, State
 
 if TYPE_CHECKING:
+    from quintet.components.sph_solid.opencl.ranks import DeviceCopies
     from quintet.components.sph_solid.opencl.rings import DeviceRings
 
+MakeCopies = Callable[[DeviceImages, Any], "DeviceCopies"]
 IN_ROWS = tuple(name for name in OF_PARTICLES if name != "reference")
 
 
@@ -35,15 +38,22 @@ class DeviceState:
         As of `Cells`.
     ring_length : float, m
         Smoothing length of rings; 0 of bodies that are not axisymmetric.
+    copies
+        Makes copies of other ranks' particles, of images and kernels; None on one rank.
     """
 
     def __init__(
         self, queue: Any, kernels: Any, planes: list[Plane], mirrors: list[Plane], width: int,
-        by_rows: bool, ring_length: float,
+        by_rows: bool, ring_length: float, copies: "MakeCopies | None" = None,
     ) -> None:  # fmt: skip
         self.queue, self.width = queue, width
         self.cells = Cells(queue, kernels, by_rows)
-        self.images = DeviceImages(planes, mirrors, kernels, self.take_rows)
+        self._of_planes = DeviceImages(planes, mirrors, kernels, self.take_rows)
+        self.copies = copies(self._of_planes, kernels) if copies else None
+        self.images = self.copies or self._of_planes
+        self.lists: NearLists
+        self.turn: DeviceArray | None = None  # of the rings that are listed
+        self.turns: DeviceArray | None = None  # table of turns
         self._rings = device_rings(queue, kernels, ring_length)
         self._gather, self._survey, self._fill = kernels.gather, kernels.survey, kernels.fill
         self._note_places, self._find_not_finite = kernels.note_places, kernels.find_not_finite
@@ -51,8 +61,8 @@ class DeviceState:
     def put(self, state: State, group: Array | None = None) -> None:
         """Copy a state to the device, and make the lists that it had.
 
-        Until the next step each row of `place` then has the place in these lists, and the number
-        (n,) of a group if there are such numbers.
+        Each row of `place` then has the place in these lists, and the volume, or the number (n,) of
+        a group if there are such numbers; `motion` has velocities, and what has failed.
         """
         queue, self.count = self.queue, state.particles
         self.arrays = {name: DeviceArray.of(queue, getattr(state, name)) for name in IN_ROWS}
@@ -68,15 +78,32 @@ class DeviceState:
         self.force = DeviceArray.of(queue, state.force)
         self.active = DeviceArray.of(queue, state.active)
         self.pulled = DeviceArray.of(queue, state.pulled)
-        place = np.zeros(rows)
-        place[:, :3] = state.reference
-        if group is not None:
-            place[:, 3] = group
-        self.place, self.motion = DeviceArray.of(queue, place), DeviceArray(queue, rows)
+        fourth = state.volume if group is None else group
+        self.place, self.motion = (
+            DeviceArray.of(queue, np.column_stack(columns))
+            for columns in ((state.reference, fourth), (state.velocity, state.failed))
+        )
+        if self.copies:
+            self._list_with_copies(self.copies, state)
+            return
         low, high = state.reference.min(axis=0), state.reference.max(axis=0)
         grid = grid_between(low, high, state.reach)
         key = self.cells.sorted_keys(self.place, 0, self.count, grid)
         self._list(state.reference, state.reach, grid, key)
+
+    def _list_with_copies(self, copies: "DeviceCopies", state: State) -> None:
+        """List neighbours of particles at their references, among copies and images too."""
+        copies.find(self.queue, state)
+        self.place, self.motion = (
+            copies.with_room(rows, self.count, copies.number) for rows in (self.place, self.motion)
+        )
+        copies.write_rows(self.place, self.motion, self.count)
+        self._make_stress(copies.number)
+        self.lists = copies.lists(self.cells, state, self.extremes, self.reference)
+
+    def _make_stress(self, others: int) -> None:
+        """Make room for rows of stress of particles, and of so many behind them."""
+        self.stress = DeviceArray(self.queue, (self.count + others, 4 * self.width))
 
     def put_glue(self, state: State) -> None:
         """Copy which glued particles are attached, and the velocities of the mesh."""
@@ -111,9 +138,9 @@ class DeviceState:
 
     def reflect(self, dt: float) -> None:
         """Reflect particles that passed a plane of symmetry in a step of dt [s]."""
-        if self.images.mirrors:
+        if self._of_planes.mirrors:
             arrays = self.arrays
-            self.images.reflect(self.queue, self.count, arrays)
+            self._of_planes.reflect(self.queue, self.count, arrays)
             places = arrays["position"], arrays["velocity"], self.place, self.motion
             numbers = np.int32(self.count), np.float64(dt)
             run(self.queue, self._fill, self.count, *numbers, *places)
@@ -131,7 +158,7 @@ class DeviceState:
             for rows in (self.place, self.motion)
         )
         self.note_places(self.reference)
-        points = self.reference.get() if self.images.mirrors else np.zeros((0, 3))
+        points = self.reference.get() if self._of_planes.mirrors else np.zeros((0, 3))
         self._list(points, state.reach, grid, key)
 
     def note_places(self, target: DeviceArray) -> None:
@@ -154,20 +181,19 @@ class DeviceState:
         """List neighbours of particles at points (n, 3) m; `place` has them in its rows."""
         cells, count = self.cells, self.count
         starts = cells.starts(key, 0, count, grid)
-        images = self.images.find(self.queue, points, reach)
+        images = self._of_planes.find(self.queue, points, reach)
         self.place, self.motion = (
-            self.images.with_room(rows, count) for rows in (self.place, self.motion)
+            self._of_planes.with_room(rows, count, images) for rows in (self.place, self.motion)
         )
-        self.stress = DeviceArray(self.queue, ((count + images) * self.width, 4))
+        self._make_stress(images)
         image_starts = DeviceArray.of(self.queue, np.zeros(grid.cells + 2, np.int32))
         if images:
-            image_starts = self.images.sort(cells, self.place, self.motion, count, grid)
-        self.lists: NearLists = cells.lists(
+            image_starts = self._of_planes.sort(cells, self.place, self.motion, count, grid)
+        self.lists = cells.lists(
             self.place, None, count, count, grid, (starts, image_starts), reach, self.extremes
         )
-        self.turn = self.turns = None
         if self._rings:
-            radius = self.images.of_all(points[:, 0])
+            radius = self._of_planes.of_all(points[:, 0])
             self.lists, self.turn = self._rings.images(
                 cells, self.lists, self.place, radius, count, reach, self.extremes
             )

@@ -1,12 +1,17 @@
-"""Optional physics on devices as objects: which sums over pairs a scene needs."""
+"""Optional parts on devices as objects: sums over pairs, copies of other ranks' particles."""
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from numpy.typing import NDArray
 
 from quintet.components.sph_solid.neighbours import SolidLists
 from quintet.components.sph_solid.opencl.current_sums import DeviceCurrentSums
+from quintet.components.sph_solid.opencl.device_state import MakeCopies
+from quintet.components.sph_solid.opencl.images import DeviceImages
 from quintet.components.sph_solid.pair_sums import CurrentSums, PairSums
+from quintet.components.sph_solid.ranks.method import Ranks
+from quintet.components.sph_solid.ranks.one import OneRank
+from quintet.interfaces.component import Resources
 
 if TYPE_CHECKING:
     from quintet.components.sph_solid.opencl.reference_sums import DeviceReferenceSums
@@ -20,6 +25,31 @@ def has_device_sums(sums: PairSums) -> bool:
     from quintet.components.sph_solid.reference_sums import ReferenceSums
 
     return type(sums) is ReferenceSums
+
+
+class CopiesOnDevice(NamedTuple):
+    """Kernels that copies of other ranks' particles need, and what makes these copies, if any."""
+
+    source: str
+    make: MakeCopies | None
+
+
+def copies_on_device(ranks: Ranks, resources: Resources, queue: Any) -> CopiesOnDevice:
+    """Copies that a rank of the host finds; none on one rank."""
+    if isinstance(ranks, OneRank):
+        return CopiesOnDevice("", None)
+    # Only a solid of several ranks loads mpi4py.
+    from quintet.components.shared.opencl import halo
+    from quintet.components.sph_solid.opencl.ranks import DeviceCopies
+    from quintet.components.sph_solid.ranks.several import SeveralRanks
+
+    assert isinstance(ranks, SeveralRanks)
+    communicator = resources.communicator
+
+    def make(images: DeviceImages, kernels: Any) -> DeviceCopies:
+        return DeviceCopies(communicator, ranks, images, queue, kernels)
+
+    return CopiesOnDevice(halo.source(), make)
 
 
 def device_sums(

@@ -11,10 +11,9 @@ import numpy as np
 
 from quintet.components.shared.opencl.arrays import DeviceArray, run
 from quintet.components.shared.opencl.cells import Cells
-from quintet.components.shared.opencl.devices import opencl
 from quintet.components.shared.search.cells import Grid
 from quintet.components.shared.symmetry import Plane, mirrored
-from quintet.components.sph_solid.state import Array
+from quintet.components.sph_solid.state import Array, Whole
 
 
 class DeviceImages:
@@ -52,8 +51,13 @@ class DeviceImages:
 
     def find(self, queue: Any, points: Array, reach: float) -> int:
         """Find what is nearer to a plane than a reach [m], of points (n, 3) m; return how many."""
-        if not self.planes:
-            return 0
+        return len(self.find_of(queue, points, reach)) if self.planes else 0
+
+    def find_of(self, queue: Any, points: Array, reach: float, row: Whole | None = None) -> Array:
+        """Find images as `find`; return where they are (k, 3) m.
+
+        Points have the rows `row` (n,), or those of their order.
+        """
         root, sign, shift = np.zeros(0, np.int64), np.zeros((0, 4)), np.zeros((0, 4))
         images = np.zeros((0, 3))
         for plane in self.planes:
@@ -70,9 +74,10 @@ class DeviceImages:
             root = np.concatenate([root, first, root[again]])
             sign = np.concatenate([sign, signs])
             shift = np.concatenate([shift, mirrored(shifts, plane)])
-        self.number = len(root)
+        self.number, places = len(root), sign[:, :3] * points[root] + shift[:, :3]
+        root = root if row is None else row[root]
         self._arrays = [DeviceArray.of(queue, array) for array in (root, sign, shift)]
-        return self.number
+        return places
 
     def of_all(self, values: Array) -> Array:
         """Values (n,) of particles, and then of their images (n + images,)."""
@@ -80,11 +85,10 @@ class DeviceImages:
             return values
         return np.concatenate([values, values[self._arrays[0].get()]])
 
-    def with_room(self, rows: DeviceArray, count: int) -> DeviceArray:
-        """Rows (n, 4) with room for images behind the first `count`."""
-        target = DeviceArray(rows.queue, (count + self.number, 4))
-        size = count * 4 * target.dtype.itemsize
-        opencl().enqueue_copy(rows.queue, target.memory, rows.memory, byte_count=size)
+    def with_room(self, rows: DeviceArray, count: int, others: int) -> DeviceArray:
+        """Rows (n, 4) with room for so many behind the first `count`."""
+        target = DeviceArray(rows.queue, (count + others, 4))
+        target.copy_first(count, rows)
         return target
 
     def sort(

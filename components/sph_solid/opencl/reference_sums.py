@@ -84,7 +84,7 @@ class DeviceReferenceSums:
             rows.place, rows.motion, rows.stress, self.deformed, *near, self._law, self.forced,
             self.heats, heating, rows.extremes,
         )  # fmt: skip
-        self.touching.add(rows, self.start, self.heats)
+        self.touching.add(rows, self.heats)
 
     def forces(self, rows: DeviceState) -> tuple[DeviceArray, ...]:
         """Accelerations (n, 3) m/s2 by stresses, and by the forces that heat."""

@@ -1,18 +1,18 @@
 """Steps of bodies on a device: motion, materials, sums over pairs, and whether lists still hold."""
 
-from typing import NamedTuple
+from typing import Any
 
 import numpy as np
 
 from quintet.components.shared.materials.solid import Solid
 from quintet.components.shared.opencl.arrays import DeviceArray, run
-from quintet.components.shared.opencl.devices import Device, build
+from quintet.components.shared.opencl.devices import build
 from quintet.components.shared.opencl.sums import Sums
 from quintet.components.shared.opencl.types import bytes_of
 from quintet.components.sph_solid.laws import PairLaw
 from quintet.components.sph_solid.neighbours import FEW, SolidLists
 from quintet.components.sph_solid.opencl.device_state import DeviceState
-from quintet.components.sph_solid.opencl.features import device_sums
+from quintet.components.sph_solid.opencl.features import CopiesOnDevice, device_sums
 from quintet.components.sph_solid.opencl.programs import source, width
 from quintet.components.sph_solid.pair_sums import PairSums
 from quintet.components.sph_solid.state import Array, State
@@ -26,21 +26,14 @@ ADVANCED = (
 ENDED = "velocity", "acceleration", "heating", "energy"
 
 
-class StepEnd(NamedTuple):
-    """What a step finds at its end."""
-
-    bound: float  # s, stable step of all particles
-    failed: bool  # whether a velocity is not finite
-
-
 class Stepping:
     """Steps of one solid.
 
     Parameters
     ----------
-    device : Device
-    threads : int
-        Of the processor, where it is the device.
+    queue : pyopencl.CommandQueue
+    is_processor : bool
+        Whether the device is the processor.
     law : PairLaw
     materials : list of Solid
     lists : SolidLists
@@ -48,23 +41,25 @@ class Stepping:
     pair_sums : PairSums
         Of the host.
     gravity : Vector, m/s2
+    copies : CopiesOnDevice
     """
 
     def __init__(
-        self, device: Device, threads: int, law: PairLaw, materials: list[Solid],
-        lists: SolidLists, pair_sums: PairSums, gravity: Vector,
+        self, queue: Any, is_processor: bool, law: PairLaw, materials: list[Solid],
+        lists: SolidLists, pair_sums: PairSums, gravity: Vector, copies: CopiesOnDevice,
     ) -> None:  # fmt: skip
-        self.queue, self.lists = device.queue(threads), lists
-        lanes = LANES_OF_PROCESSORS if device.is_processor else 1
+        self.queue, self.lists = queue, lists
+        lanes = LANES_OF_PROCESSORS if is_processor else 1
         rings, keeps = lists.is_axisymmetric, lists.are_for_good
-        kernels = build(self.queue, source(law, materials[0], lanes, rings, keeps))
+        text = source(law, materials[0], lanes, rings, keeps)
+        kernels = build(self.queue, text + copies.source)
         self.rows = DeviceState(
             self.queue, kernels, lists.images.planes, lists.mirrors, width(law, keeps),
-            device.is_processor, law.smoothing.length if rings else 0.0,
+            is_processor, law.smoothing.length if rings else 0.0, copies.make,
         )  # fmt: skip
         of_pairs = bytes_of(law, np.float64)
         self.pairs = device_sums(self.queue, kernels, of_pairs, pair_sums, lists)
-        self._sums = Sums(self.queue, kernels, device.is_processor)
+        self._sums = Sums(self.queue, kernels, is_processor)
         self._kick, self._finish, self._advance = kernels.kick, kernels.finish, kernels.advance
         self._displacements, self._mark_fast = kernels.displacements, kernels.mark_fast
         self._meet_few = kernels.meet_few
@@ -86,7 +81,9 @@ class Stepping:
 
     def put(self, state: State) -> None:
         """Copy a state to the device, and make the lists that it had."""
-        group = self.lists.group(state) if self.lists.are_for_good else None
+        group = None
+        if self.lists.are_for_good:
+            group = self.lists.group(state).astype(np.float64)
         self.rows.put(state, group)
         self.pairs.make(self.rows, state)
 
@@ -113,6 +110,8 @@ class Stepping:
         skin = state.reach - self.lists.support
         if not self.pairs.may_miss(low, high) or self.lists.spread(low, high) <= skin:
             return False
+        if self.rows.copies:
+            return self._some_rank_may_miss(state, self.lists.spread(low, high), dt)
         rows, arrays, count = self.rows, self.rows.arrays, np.int32(self.rows.count)
         position, velocity = arrays["position"], arrays["velocity"]
         displacements = rows.most, rows.least  # room for those in the middle and at the end
@@ -138,8 +137,18 @@ class Stepping:
         )  # fmt: skip
         return bool(rows.cells.greatest(rows.extremes, rows.count)[0] > 0.0)
 
-    def finish(self, dt: float) -> StepEnd:
-        """Advance materials by dt [s], with places and velocities in its middle; end the step."""
+    def _some_rank_may_miss(self, state: State, spread: float, dt: float) -> bool:
+        """Whether lists of some rank may lack a pair, as hosts find it."""
+        arrays = self.rows.arrays
+        state.position, state.velocity = (arrays[name].get() for name in ("position", "velocity"))
+        middle = self.rows.place.get()[: self.rows.count]
+        return self.lists.may_miss(state, spread, middle, dt)
+
+    def finish(self, dt: float) -> Array:
+        """Advance materials by dt [s], with places and velocities in its middle; end the step.
+
+        Return minus the stable step [s] of all particles, and 1 if a velocity is not finite.
+        """
         rows, arrays, count = self.rows, self.rows.arrays, np.int32(self.rows.count)
         duration, places = np.float64(dt), (rows.place, rows.motion)
         rows.images.write_rows(*places, rows.count)
@@ -156,5 +165,4 @@ class Stepping:
             arrays["material"], arrays["volume"], arrays["fixed"], arrays["glue"], rows.active,
             rows.force, *(arrays[name] for name in ENDED), rows.extremes, *self.pairs.forces(rows),
         )  # fmt: skip
-        bound, failed = rows.cells.greatest(rows.extremes, rows.count)[:2]
-        return StepEnd(-float(bound), bool(failed > 0.0))
+        return rows.cells.greatest(rows.extremes, rows.count)[:2]

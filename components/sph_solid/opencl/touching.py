@@ -8,11 +8,13 @@ from quintet.components.shared.opencl.arrays import DeviceArray, run
 from quintet.components.shared.opencl.types import bytes_of
 from quintet.components.shared.search.cells import grid_between
 from quintet.components.sph_solid.neighbours import SolidLists
+from quintet.components.sph_solid.opencl.contact import Found, OwnParticles
 from quintet.components.sph_solid.opencl.device_state import DeviceState
 from quintet.components.sph_solid.state import Array, State
 from quintet.components.sph_solid.touching import SKIN
 
 FEWEST = 8  # particles that lists have room for at first
+OWN = OwnParticles()
 
 
 class DeviceTouching:
@@ -30,6 +32,7 @@ class DeviceTouching:
 
     def __init__(self, queue: Any, kernels: Any, spacing: float, lists: SolidLists) -> None:
         self.queue, self.spacing, self._support = queue, spacing, lists.support
+        self._ranks = lists.ranks
         self._list, self._touch = kernels.list_touching, kernels.touch
         planes = [(plane.axis, plane.position, plane.inward, 0.0) for plane in lists.images.planes]
         self._count_of_planes = len(planes)
@@ -38,7 +41,8 @@ class DeviceTouching:
 
     def make(self, rows: DeviceState, start: DeviceArray, state: State) -> None:
         """Forget what is near: it is listed in the next step."""
-        self.listed = DeviceArray.of(self.queue, state.position)
+        self.listed, self._start = DeviceArray.of(self.queue, state.position), start
+        self._particles = rows.copies.contact(self.queue) if rows.copies else OWN
         self._near = DeviceArray(self.queue, (rows.count * self._width,), np.int32)
         self._end = DeviceArray(self.queue, (rows.count,), np.int32)
         self._end.clear()
@@ -49,46 +53,53 @@ class DeviceTouching:
         moved = float(np.linalg.norm(high - low))
         self._is_old |= not moved < SKIN * self.spacing
 
-    def add(self, rows: DeviceState, start: DeviceArray, heats: DeviceArray) -> None:
+    def add(self, rows: DeviceState, heats: DeviceArray) -> None:
         """Add accelerations (n, 3) m/s2 of contact, and its power to the heating.
 
-        `rows.stress` has rows of nominal stress; `start` (n + images, 4) are places at the start.
+        `rows.stress` has rows of nominal stress.
         """
         if self._is_old:
-            self._renew(rows, start)
+            self._renew(rows)
         if not (self._is_any_near or self._count_of_planes):
             return
         numbers = np.int32(rows.count), np.float64(self.spacing), np.float64(self._support)
+        particles = self._particles.touched(rows) if self._is_any_near else OWN.touched(rows)
         run(
-            self.queue, self._touch, rows.count, *numbers, start, rows.place, rows.motion,
-            rows.stress, np.int32(self._count_of_planes), self._planes, self._near, self._end,
+            self.queue, self._touch, rows.count, *numbers, self._start, *particles,
+            np.int32(self._count_of_planes), self._planes, self._near, self._end,
             *self._strides(rows), heats, rows.arrays["heating"],
         )  # fmt: skip
 
-    def _renew(self, rows: DeviceState, start: DeviceArray) -> None:
+    def _renew(self, rows: DeviceState) -> None:
         """List what may touch until particles have come nearer by the skin."""
-        cells, count = rows.cells, rows.count
-        low, high, is_wrong = rows.extremes_of(rows.place)
-        if is_wrong:  # the step will say so
+        found = self._particles.find(rows, self._start, (1.0 + SKIN) * self.spacing)
+        if found is None:  # the step will say so
             return
-        reach = (1.0 + SKIN) * self.spacing
-        grid = grid_between(low, high, reach)
-        key = cells.sorted_keys(rows.place, 0, count, grid)
-        starts = cells.starts(key, 0, count, grid)
+        place, _, _ = self._particles.touched(rows)
+        most = self._list_near(rows, found, place) if rows.count else 0
+        rows.note_places(self.listed)
+        most_of_all = self._ranks.greatest(np.array([float(most)]))[0]
+        self._is_old, self._is_any_near = False, most_of_all > 0.0
+
+    def _list_near(self, rows: DeviceState, found: Found, place: DeviceArray) -> int:
+        """List what is near each particle, of places (all, 4); return the most of one."""
+        cells, count, reach = rows.cells, rows.count, (1.0 + SKIN) * self.spacing
+        grid = grid_between(found.low, found.high, reach)
+        of_all = count + self._particles.others
+        key = cells.sorted_keys(place, 0, of_all, grid)
+        starts = cells.starts(key, 0, of_all, grid)
         numbers = np.float64(self._support**2), np.float64(reach * reach)
         while True:
             run(
-                self.queue, self._list, count, np.int32(count), rows.place, start, *numbers, key,
-                bytes_of(grid, np.float64), starts, np.int32(self._width), *self._strides(rows),
-                self._near, self._end, rows.most,
+                self.queue, self._list, count, np.int32(count), place, found.start, found.order,
+                *numbers, key, bytes_of(grid, np.float64), starts, np.int32(self._width),
+                *self._strides(rows), self._near, self._end, rows.most,
             )  # fmt: skip
             most = int(cells.greatest(rows.most, count)[0])
             if most <= self._width:
-                break
+                return most
             self._width = most + most // 8
             self._near = DeviceArray(self.queue, (count * self._width,), np.int32)
-        rows.note_places(self.listed)
-        self._is_old, self._is_any_near = False, most > 0
 
     def _strides(self, rows: DeviceState) -> tuple[np.int64, np.int64]:
         by_rows = (self._width, 1) if rows.cells.by_rows else (1, rows.count)

@@ -19,6 +19,11 @@ class ContactCopies:
     def __init__(self, communicator: Any, keys: Whole) -> None:
         self._rows, self._keys = CopiesAndImages(communicator, []), keys
 
+    @property
+    def rows(self) -> tuple[list[Whole], list[Whole]]:
+        """For each rank the rows that it gets, and the rows into which its rows go."""
+        return self._rows.sent, self._rows.received
+
     def find(self, places: Array, reach: float) -> tuple[Array, Whole]:
         """Copy what is within a reach [m] of the box around own places (n, 3) m.
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quintet.components.shared.domain.collection import collect
-from quintet.components.shared.domain.copies import CopiesAndImages, Group
+from quintet.components.shared.domain.copies import CopiesAndImages, Extended, Group
 from quintet.components.shared.domain.exchange import share
 from quintet.components.shared.domain.extremes import added, greatest
 from quintet.components.shared.domain.owner import owner_of
@@ -77,13 +77,18 @@ class SeveralRanks:
     ) -> tuple[Array, NeighbourLists]:
         """Places of particles, copies and images, and the lists of own particles."""
         places, reach = state.reference, state.reach
-        extended = self.images.copy([Group(places, self._keys, places)], reach)
+        extended = [self.copy(state)]
         points, (rows,) = self.images.find_images(extended, reach)
         nothing = np.zeros(0, np.int64)
         grid = grid_of_all(self._communicator, points.take(rows, axis=0), reach)
         count = state.particles
         lists = neighbours_among(reach, points, rows, nothing, places, count, team, buffer, grid)
         return points, lists
+
+    def copy(self, state: State) -> Extended:
+        """Find what other ranks have within the reach of lists, and copy it behind own rows."""
+        group = Group(state.reference, self._keys, state.reference)
+        return self.images.copy([group], state.reach)[0]
 
     def contact(self) -> ContactCopies:
         """Own particles, and copies of those that come near."""

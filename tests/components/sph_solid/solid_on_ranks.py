@@ -60,10 +60,14 @@ class Run(SolverRun):
 
     def build(self):
         params = TypeAdapter(SphSolidParams).validate_json(json.dumps(PARAMS[self.name]))
-        solid = SphSolid(params, Resources(communicator=COMMUNICATOR))
+        solid = self.make(params)
         glue = {"glued", "glue_activity", "glued_load"} if solid.describe() else ()
         solid.bind({}, frozenset(glue))
         return solid
+
+    def make(self, params):
+        """Return the solid of some parameters."""
+        return SphSolid(params, Resources(communicator=COMMUNICATOR))
 
     def inputs(self):
         number = np.arange(len(self.solver.state.active))
