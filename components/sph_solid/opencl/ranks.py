@@ -49,7 +49,7 @@ class DeviceCopies:
     def contact(self, queue: Any) -> DeviceContactCopies:
         """Copies of what own particles may touch, in the order that they have now."""
         halo = DeviceHalo(self._communicator, queue, self._kernels)
-        return DeviceContactCopies(self._ranks, self._ranks.contact(), halo)
+        return DeviceContactCopies(self._ranks.contact(), halo)
 
     @property
     def number(self) -> int:
