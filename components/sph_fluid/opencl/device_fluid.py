@@ -3,7 +3,8 @@
 An `SphFluid` on the host makes the particles, and reads gauges, totals, views, checks and
 snapshots: rows are copied into its state before. Between these a step brings back four numbers;
 with bodies the forces on their samples too, with damping zones and moving tanks a number per
-particle.
+particle. With inflows and outflows each sort brings back a byte per particle, and the rows of
+buffers and beside them.
 
 Samples of bodies are placed in the host's state and copied to the device. Where there are samples,
 the host's rows of the boundary have the order of the device's.
