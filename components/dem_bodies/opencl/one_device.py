@@ -19,7 +19,8 @@ from quintet.components.dem_bodies.opencl.search import Search
 from quintet.components.dem_bodies.opencl.stages import Stages
 from quintet.components.dem_bodies.ranks.one import OneRank
 from quintet.components.dem_bodies.state import BallPairs, Model, Numbers, State
-from quintet.components.shared.opencl.devices import build, device_of, require_doubles
+from quintet.components.shared.opencl.devices import build, require_doubles
+from quintet.components.shared.opencl.ranks import device_and_queue
 from quintet.components.shared.search.verlet_list import slack
 from quintet.interfaces.component import Fields, Resources
 from quintet.interfaces.errors import SceneError, StepError
@@ -42,13 +43,12 @@ class OneDevice(OneRank):
     lists: DeviceLists
 
     def __init__(self, state: State, lists: DeviceLists, resources: Resources) -> None:
-        device = device_of(resources.device)
+        device, queue = device_and_queue(resources)
         require_doubles(device, resources.device)
         super().__init__(state, lists, threads=1)
         balls = lists.balls
         assert balls is not None
         lanes = LANES_OF_PROCESSORS if device.is_processor else 1
-        queue = device.queue(resources.threads)
         rolls = balls.rolling_moment is not None
         kernels = build(queue, programs.source(rolls, lanes))
         self.rows = DeviceRows(queue, kernels, self.model, state, slice(0, len(balls.begin) - 1))

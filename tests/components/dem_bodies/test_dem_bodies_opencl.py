@@ -295,6 +295,12 @@ def test_a_device_without_double_precision_is_refused(monkeypatch):
         spheres(DEVICE)
 
 
+def test_one_rank_takes_no_list_of_devices():
+    words = r"device opencl:0,1: it must have one number, .*; found 2 numbers and ranks = 1"
+    with pytest.raises(SceneError, match=words):
+        spheres(Resources(device="opencl:0,1"))
+
+
 def test_bodies_on_the_processor_load_no_opencl():
     program = (
         "import sys; from quintet.components.dem_bodies import MANIFEST; MANIFEST.load();"
