@@ -38,7 +38,7 @@ class DeviceLists(ContactLists):
 
 
 class HostCopy:
-    """What of a device's rows and lists the host has; rows and pairs are copied when needed.
+    """Tracks which rows and pairs on the host are up to date.
 
     Parameters
     ----------

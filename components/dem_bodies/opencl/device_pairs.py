@@ -19,7 +19,7 @@ MOST_LANES = 4  # pairs that are computed at once
 class DevicePairs:
     """`BallPairs` in device memory, and for each row the pairs in which it is the partner.
 
-    Loads have room for those of other ranks' pairs, behind own ones.
+    `push` and `moment` also have slots for pairs of other ranks, after this rank's own.
     """
 
     count: int

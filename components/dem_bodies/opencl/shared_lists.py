@@ -37,7 +37,7 @@ class SharedDeviceLists(DeviceLists, SharedLists):
         )
 
     def _link_loads(self, rows: slice) -> None:
-        """Give loads of other ranks' pairs slots behind those of own ones."""
+        """Assign slots to loads received from other ranks, after those of own pairs."""
         partner, balls = self.balls.partner.astype(np.int64), self.rows.owned_balls
         of_balls = np.flatnonzero(partner < self.shares.rows)
         room = stride_of(len(partner))

@@ -21,7 +21,7 @@ class Loads(NamedTuple):
 
 
 def link_loads(shares: Shares, rows: slice, target: Whole, slot: Whole, room: int) -> Loads:
-    """Let ranks know of the loads that their rows get from pairs of earlier ranks; collective.
+    """Tell each rank which loads its rows receive from earlier ranks; collective.
 
     Parameters
     ----------

@@ -26,7 +26,7 @@ class Copies(Protocol):
 
 
 class NoCopies:
-    """Those of one rank."""
+    """No copies: one rank."""
 
     source, are_there = "", False
 

@@ -57,7 +57,7 @@ class DevicePoints:
         role[model.frozen] = FROZEN
         role[copies] = COPY
         self.role, self.point = self._of(role), self._of(bathed.point.astype(np.int32))
-        # Of a bathed point, among those of all ranks: random numbers are counted by them.
+        # Index of each bathed point among all ranks' bathed points; it selects the random numbers.
         number = np.cumsum(bathed.passed[:-1]) + np.arange(len(bathed.point))
         self.number, self.bathed = (
             self._of(number.astype(np.int32)),

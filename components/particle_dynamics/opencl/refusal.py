@@ -18,7 +18,7 @@ def refuse_what_needs_the_processor(params: ParticleLatticeParams, device: str) 
 
 
 def refuse_what_needs_one_rank(params: ParticleLatticeParams, ranks: int) -> None:
-    """Refuse what changes points of all ranks at once.
+    """Refuse collisions, which need one rank.
 
     Raises
     ------

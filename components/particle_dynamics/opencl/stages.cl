@@ -1,5 +1,6 @@
 /* Stages of a step: see kernels/motion.py. `half_stage` is half the length of a stage; `motion` is
-   the prescribed motion of a driven pair at its end. Positions and rates have a fourth component, 0.
+   the prescribed motion of a driven pair at its end. Positions and rates have a fourth component,
+   which is 0.
 
    RANDOM is defined where baths or collisions act in the middle of a stage, DAMPED and DAMPS_ALL
    where forces take predicted velocities. */
@@ -90,8 +91,9 @@ static void measure(
     extremes[i] = (double4)(max_real(greatest.x, moved), max_real(greatest.y, square), 0, 0);
 }
 
-/* Compute the forces and kick; copies of other ranks' points stay as they are. The list of a point has those of lower number that list it, until
-   `first`; those that it lists itself, until `second`; and those of higher number that list it. */
+/* Compute the forces and kick; copies of other ranks' points stay as they are. The list of a point
+   has those of lower number that list it, until `first`; those that it lists itself, until
+   `second`; and those of higher number that list it. */
 __kernel void close_stage(
     double half_stage, int is_last, double weight, double mass, int count, Driven driven,
     PairTerms terms, __global const int *role, __global const double *tether,

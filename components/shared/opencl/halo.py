@@ -119,7 +119,7 @@ class DeviceHalo:
 
 
 def _staged(of_ranks: list[Whole], first: int) -> list[Whole]:
-    """Rows of a message in which those of each rank stand one after another, from one on."""
+    """Rows of a message, rank after rank, starting at row `first`."""
     ends = first + np.cumsum([0, *map(len, of_ranks)])
     return [np.arange(begin, end) for begin, end in pairwise(ends.tolist())]
 
