@@ -170,9 +170,9 @@ class SeveralDevices(SeveralRanks):
 
 def total_of(sums: Numbers) -> Numbers:
     """Sums (columns,) of groups (groups, columns), in the order in which `tallies.cl` adds them."""
-    columns = sums.shape[1]
-    rounds = np.zeros((1 - (-len(sums) // GROUP), GROUP, columns))
-    rounds[1:].reshape(-1, columns)[: len(sums)] = sums  # behind zeros, with which sums begin
-    of_items = np.cumsum(rounds, axis=0)[-1]
+    of_items = np.zeros((GROUP, sums.shape[1]))
+    for first in range(0, len(sums), GROUP):
+        groups = sums[first : first + GROUP]
+        of_items[: len(groups)] += groups
     total: Numbers = np.cumsum(of_items, axis=0)[-1]
     return total
