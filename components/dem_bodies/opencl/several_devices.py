@@ -87,6 +87,7 @@ class SeveralDevices(SeveralRanks):
         self.device_rows.put_planes()
         self._host.outdate()
         furthest = np.array([self.stages.drift(dt, loaded)])
+        self._write_sums(OF_DRIFT, self.stages.sums_of_drift())
         travel = float(greatest(shares.communicator, furthest)[0])
         holds = slack(self.lists.skin, root(travel)) >= 0.0
         if holds:
@@ -98,8 +99,6 @@ class SeveralDevices(SeveralRanks):
         self._loads.exchange(pairs.push, *([] if pairs.moment is None else [pairs.moment]))
         self.stages.kick(dt, loaded)
         self._host.outdate()
-        if holds:
-            self._write_sums(OF_DRIFT, self.stages.sums_of_drift())
         reduced = self._reduced()
         write_report(state, self.model.gravity, reduced, travel if holds else 0.0)
         self.lists.touching = int(reduced.of_kick["CONTACTS"])
@@ -109,7 +108,6 @@ class SeveralDevices(SeveralRanks):
     def _renew(self, state: State) -> bool:
         """List pairs again on the host; return False if a position is not finite."""
         self._host.read()
-        self._write_sums(OF_DRIFT, self.stages.sums_of_drift())
         try:
             if not self._list_pairs(state):
                 return False

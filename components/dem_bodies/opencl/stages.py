@@ -52,8 +52,7 @@ class Tally:
 
     def sums(self) -> Numbers:
         """Sums (columns, groups) of the groups of the last run."""
-        sums: Numbers = self.part.get()[: self._sums]
-        return sums
+        return self.part.get(0, self._sums)
 
 
 class Stages:

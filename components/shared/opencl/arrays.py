@@ -80,13 +80,13 @@ class DeviceArray:
             zero = np.zeros(1, self.dtype)
             opencl().enqueue_fill_buffer(self.queue, self.memory, zero, 0, size)
 
-    def get(self, first: int = 0) -> NDArray[Any]:
-        """Read the rows of the array, from the first one on."""
-        array: NDArray[Any] = np.empty((self.shape[0] - first, *self.shape[1:]), self.dtype)
+    def get(self, first: int = 0, end: int | None = None) -> NDArray[Any]:
+        """Read the rows of the array from row `first` on, to before row `end` if it is given."""
+        count = (self.shape[0] if end is None else end) - first
+        array: NDArray[Any] = np.empty((count, *self.shape[1:]), self.dtype)
         if array.size:
-            offset = first * (array.nbytes // array.shape[0])
             opencl().enqueue_copy(
-                self.queue, array, self.memory, src_offset=offset, is_blocking=True
+                self.queue, array, self.memory, src_offset=first * self.row_size, is_blocking=True
             )
         return array
 
