@@ -9,6 +9,7 @@ from solver_run import COMMUNICATOR, WORLD
 
 from quintet.components.dem_bodies.component import DemBodies
 from quintet.components.dem_bodies.params import DemBodiesParams
+from quintet.components.dem_bodies.state import BLOCK
 from quintet.interfaces.component import Resources
 from quintet.interfaces.params import read
 
@@ -28,13 +29,29 @@ def few():
     return heap(3, 3, 3) | {"contact_forces": True}
 
 
+def one_block():
+    """Spheres that fill one block of rows: the last of two ranks owns the ground alone."""
+    return heap(8, 8, BLOCK // 64) | {"contact_forces": True}
+
+
 class Run(dem_on_ranks.Run):
     """A scene on devices; one of them begins from a run on the processor."""
 
-    scenes = dem_on_ranks.SCENES | {"crowd": crowd, "few": few, "begun": restarted}
+    scenes = dem_on_ranks.SCENES | {
+        "crowd": crowd, "few": few, "one block": one_block, "begun": restarted,
+    }  # fmt: skip
     resources = Resources(
         1, communicator=COMMUNICATOR, device="opencl:" + ",".join("0" * WORLD.size)
     )
+
+    def load(self, saved):
+        """Go on from a saved state; on several devices by way of the processor."""
+        if WORLD.size > 1 and self.name == "heap":
+            params, _ = read(DemBodiesParams, self.scenes[self.name](), self.name)
+            bodies = DemBodies(params)
+            bodies.load({name.removeprefix("state "): saved[name] for name in saved})
+            saved = saved | {f"state {name}": array for name, array in bodies.save().items()}
+        super().load(saved)
 
     def state_elsewhere(self):
         """State of the same spheres on the processor, with other friction and planes."""

@@ -11,11 +11,12 @@ pytest.importorskip("pyopencl")
 from quintet.components.dem_bodies import MANIFEST
 from quintet.components.dem_bodies.component import DemBodies
 from quintet.components.dem_bodies.opencl.several_devices import total_of
+from quintet.components.dem_bodies.state import BLOCK
 from quintet.interfaces.component import Resources
 from quintet.interfaces.errors import SceneError
 
 PROGRAM = Path(__file__).with_name("dem_devices_on_ranks.py")
-NAMES = ("heap", "rolling", "begun", "few")
+NAMES = ("heap", "rolling", "begun", "few", "one block")
 RESUMED, LONG = ("heap", "rolling"), ("crowd", "rolling")
 folder = from_the_start(PROGRAM, NAMES, 60)
 resumed = from_states(PROGRAM, RESUMED, 30)
@@ -38,6 +39,11 @@ def test_spheres_touch_each_other_and_planes_in_these_runs(folder):
     assert np.count_nonzero(touching & ~on_planes) > 100
     assert np.count_nonzero(touching & on_planes) > 10
     assert np.load(folder / "rolling-2.npz")["state balls.rolling_moment"].any()
+
+
+@pytest.mark.mpi
+def test_the_last_of_two_devices_owns_no_sphere_of_one_block(folder):
+    assert len(np.load(folder / "one block-2.npz")["state body"]) == BLOCK + 1
 
 
 @pytest.mark.mpi

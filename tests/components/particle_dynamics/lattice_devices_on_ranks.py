@@ -14,9 +14,23 @@ from quintet.interfaces.component import Resources
 DEVICES = "opencl:" + ",".join("0" * WORLD.size)
 
 
+def state_elsewhere(params):
+    """State of a lattice with other temperatures on the processor."""
+    baths = tuple(replace(bath, temperature=2.0 * bath.temperature) for bath in params.baths)
+    lattice = ParticleLattice(replace(params, baths=baths), Resources(1))
+    for _ in range(20):
+        lattice.step(lattice.stable_dt())
+    return lattice.save()
+
+
 class Run(lattice_on_ranks.Run):
-    """A lattice without collisions on devices."""
+    """A lattice without collisions on devices; one begins from a run on the processor."""
 
     def build(self):
-        params = replace(lattice_on_ranks.params(self.name), collision_rate=0.0)
-        return ParticleLattice(params, Resources(1, communicator=COMMUNICATOR, device=DEVICES))
+        is_begun = self.name == "begun"
+        params = lattice_on_ranks.params("heated" if is_begun else self.name)
+        params = replace(params, collision_rate=0.0)
+        lattice = ParticleLattice(params, Resources(1, communicator=COMMUNICATOR, device=DEVICES))
+        if is_begun:
+            lattice.begin_from(state_elsewhere(params))
+        return lattice

@@ -19,13 +19,14 @@ from quintet.interfaces.errors import SceneError
 
 PROGRAM = Path(__file__).with_name("lattice_devices_on_ranks.py")
 NAMES = ("driven", "heated", "periodic", "breaks up")
-folder = from_the_start(PROGRAM, NAMES, 45)
+FROM_THE_START = (*NAMES, "begun")
+folder = from_the_start(PROGRAM, FROM_THE_START, 45)
 resumed = from_states(PROGRAM, NAMES, 12)
 long = from_the_start(PROGRAM, NAMES, 1000, ranks=(1, 2, 3))
 
 
 @pytest.mark.mpi
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", FROM_THE_START)
 def test_two_devices_compute_what_one_does_to_the_bit(name, folder):
     assert differences(folder, f"{name}-1", f"{name}-2") == []
     state = np.load(folder / f"{name}-2.npz")
