@@ -24,6 +24,10 @@ class DeviceLists(ContactLists):
         """Take pairs that were copied to the device."""
         self.device_pairs, self.are_of_device = pairs, False
 
+    def release(self) -> None:
+        """Let go of pairs on the device, so that their memory can be freed."""
+        vars(self).pop("device_pairs", None)
+
     def follow(self, pairs: DevicePairs, most_contacts: int) -> None:
         """Follow pairs that the device has listed, and the most that a row has."""
         self.device_pairs, self.are_of_device, self.most_contacts = pairs, True, most_contacts
@@ -42,11 +46,12 @@ class HostCopy:
 
     Parameters
     ----------
-    rows : DeviceRows
+    rows : DeviceRows or None
+        None while a device has none: those of the host are up to date.
     lists : DeviceLists
     """
 
-    def __init__(self, rows: DeviceRows, lists: DeviceLists) -> None:
+    def __init__(self, rows: DeviceRows | None, lists: DeviceLists) -> None:
         self._rows, self._lists = rows, lists
         self._has_rows = self._has_pairs = True
 
@@ -57,6 +62,7 @@ class HostCopy:
     def read_rows(self) -> None:
         """Copy rows to the host, unless they are there."""
         if not self._has_rows:
+            assert self._rows is not None
             self._rows.get()
             self._has_rows = True
 

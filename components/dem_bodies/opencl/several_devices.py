@@ -58,7 +58,7 @@ class SeveralDevices(SeveralRanks):
         rolls = lists.balls.rolling_moment is not None
         self._kernels = build(queue, programs.source(rolls, self._lanes) + halo.source())
         parts = self.shares.communicator, queue, self._kernels
-        self._copies, self._loads = halo.DeviceHalo(*parts), halo.DeviceHalo(*parts)
+        self._motion_halo, self._load_halo = halo.DeviceHalo(*parts), halo.DeviceHalo(*parts)
         self.sums = np.zeros((self.shares.blocks, GROUPS * OF_KICK.stop))
         lists.link_ranks()
         self._put()
@@ -66,6 +66,7 @@ class SeveralDevices(SeveralRanks):
     def _put(self) -> None:
         """Copy own rows, copies and pairs of the host to the device."""
         lists, owned = self.lists, self.rows.owned_balls
+        self._release()
         self.device_rows = DeviceRows(
             self._queue, self._kernels, self.model, self.state, owned, lists.copied
         )
@@ -76,9 +77,18 @@ class SeveralDevices(SeveralRanks):
         count = self.device_rows.count
         ends = np.cumsum([count, *map(len, lists.needed)])
         places = [np.arange(first, last) for first, last in pairwise(ends.tolist())]
-        self._copies.follow([asked - owned.start for asked in lists.asked], places)
-        self._loads.follow(lists.loads.sent, lists.loads.arrived)
+        self._motion_halo.follow([asked - owned.start for asked in lists.asked], places)
+        self._load_halo.follow(lists.loads.sent, lists.loads.arrived)
         self._host = HostCopy(self.device_rows, lists)
+
+    def _release(self) -> None:
+        """Free the rows and pairs on the device before it gets others; the host has them."""
+        self._motion_halo.release()
+        self._load_halo.release()
+        self.lists.release()
+        self._host = HostCopy(None, self.lists)
+        for name in ("stages", "device_rows"):
+            vars(self).pop(name, None)
 
     def advance(self, state: State, dt: float, loaded: bool) -> bool:
         """Advance by dt [s]; return False where a position is not finite."""
@@ -91,12 +101,12 @@ class SeveralDevices(SeveralRanks):
         travel = float(greatest(shares.communicator, furthest)[0])
         holds = slack(self.lists.skin, root(travel)) >= 0.0
         if holds:
-            self._copies.exchange(self.device_rows.arrays["motion"])
+            self._motion_halo.exchange(self.device_rows.arrays["motion"])
         elif not self._renew(state):
             return False
         self.stages.touch(dt)
         pairs = self.lists.device_pairs
-        self._loads.exchange(pairs.push, *([] if pairs.moment is None else [pairs.moment]))
+        self._load_halo.exchange(pairs.push, *([] if pairs.moment is None else [pairs.moment]))
         self.stages.kick(dt, loaded)
         self._host.outdate()
         reduced = self._reduced()

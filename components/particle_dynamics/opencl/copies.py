@@ -15,6 +15,9 @@ class Copies(Protocol):
     def connect(self, queue: Any, kernels: Any) -> None:
         """Take a queue, and kernels built from a text that has `source`."""
 
+    def release(self) -> None:
+        """Forget rows, so that their memory can be freed."""
+
     def follow(self, points: DevicePoints) -> None:
         """Follow new rows."""
 
@@ -31,6 +34,9 @@ class NoCopies:
     source, are_there = "", False
 
     def connect(self, queue: Any, kernels: Any) -> None:
+        """Nothing to do."""
+
+    def release(self) -> None:
         """Nothing to do."""
 
     def follow(self, points: DevicePoints) -> None:

@@ -71,8 +71,11 @@ class DeviceRows:
         return self._host.owned
 
     def _put(self) -> None:
-        """Copy the host's state and lists to the device."""
+        """Copy the host's state and lists to the device, after freeing those that it has."""
         host = self._host
+        self._copies.release()
+        for name in ("_stages", "points"):
+            vars(self).pop(name, None)
         self.points = DevicePoints(self._queue, host.state, host.model, host.copies, self._by_rows)
         self._stages = Stages(self._kernels, self.points, host.model, host.terms, self._copies)
         self._copies.follow(self.points)

@@ -9,6 +9,7 @@ from quintet.components.particle_dynamics.opencl.device_points import DevicePoin
 from quintet.components.particle_dynamics.ranks.several import SeveralRanks
 from quintet.components.shared.domain.extremes import greatest
 from quintet.components.shared.opencl import halo
+from quintet.components.shared.opencl.arrays import DeviceArray
 
 
 class DeviceCopies:
@@ -29,6 +30,11 @@ class DeviceCopies:
     def connect(self, queue: Any, kernels: Any) -> None:
         """Take a queue, and kernels built from a text that has `source`."""
         self._halo = halo.DeviceHalo(self._communicator, queue, kernels)
+
+    def release(self) -> None:
+        """Forget rows, so that their memory can be freed."""
+        self._arrays: tuple[DeviceArray, ...] = ()
+        self._halo.release()
 
     def follow(self, points: DevicePoints) -> None:
         """Follow new rows."""

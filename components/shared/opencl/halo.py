@@ -76,6 +76,10 @@ class DeviceHalo:
         )
         self._messages = {}
 
+    def release(self) -> None:
+        """Forget the arrays that were exchanged, so that their memory can be freed."""
+        self._messages = {}
+
     def _rows(self, of_ranks: list[Whole]) -> DeviceArray:
         """Rows of all ranks, on the device."""
         return DeviceArray.of(self.queue, np.concatenate(of_ranks).astype(np.int32))

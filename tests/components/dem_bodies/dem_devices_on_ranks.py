@@ -5,13 +5,17 @@ Each rank names a device, all of them the first.
 
 import dem_on_ranks
 from dem_on_ranks import PLANES, heap
+from one_at_a_time import one_at_a_time
 from solver_run import COMMUNICATOR, WORLD
 
 from quintet.components.dem_bodies.component import DemBodies
+from quintet.components.dem_bodies.opencl.device_rows import DeviceRows
 from quintet.components.dem_bodies.params import DemBodiesParams
 from quintet.components.dem_bodies.state import BLOCK
 from quintet.interfaces.component import Resources
 from quintet.interfaces.params import read
+
+one_at_a_time(DeviceRows)
 
 
 def restarted():

@@ -6,12 +6,15 @@ Each rank names a device, all of them the first.
 from dataclasses import replace
 
 import lattice_on_ranks
+from one_at_a_time import one_at_a_time
 from solver_run import COMMUNICATOR, WORLD
 
 from quintet.components.particle_dynamics.component import ParticleLattice
+from quintet.components.particle_dynamics.opencl.device_points import DevicePoints
 from quintet.interfaces.component import Resources
 
 DEVICES = "opencl:" + ",".join("0" * WORLD.size)
+one_at_a_time(DevicePoints)
 
 
 def state_elsewhere(params):
