@@ -2,7 +2,7 @@
 
 from quintet.components.dem_bodies.contact.lists import ContactLists
 from quintet.components.dem_bodies.opencl.device_pairs import DevicePairs
-from quintet.components.dem_bodies.opencl.device_rows import DeviceRows
+from quintet.components.dem_bodies.opencl.device_rows import READ, DeviceRows
 
 
 class DeviceLists(ContactLists):
@@ -53,18 +53,20 @@ class HostCopy:
 
     def __init__(self, rows: DeviceRows | None, lists: DeviceLists) -> None:
         self._rows, self._lists = rows, lists
-        self._has_rows = self._has_pairs = True
+        self._current, self._has_pairs = set(READ), True  # arrays of rows, and whether pairs are
 
     def outdate(self) -> None:
         """Note that the device has newer rows and pairs."""
-        self._has_rows = self._has_pairs = False
+        self._current.clear()
+        self._has_pairs = False
 
-    def read_rows(self) -> None:
-        """Copy rows to the host, unless they are there."""
-        if not self._has_rows:
+    def read_rows(self, *names: str) -> None:
+        """Copy arrays of rows to the host, by default all, unless they are up to date."""
+        outdated = [name for name in READ if name in (names or READ) and name not in self._current]
+        if outdated:
             assert self._rows is not None
-            self._rows.get()
-            self._has_rows = True
+            self._rows.get(outdated)
+            self._current.update(outdated)
 
     def read(self) -> None:
         """Copy rows and pairs to the host, unless they are there."""

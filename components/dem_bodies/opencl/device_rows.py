@@ -101,11 +101,11 @@ class DeviceRows:
             state.listed_centre[:] = self.listed.get()
             self.is_sorted_apart = False
 
-    def get(self) -> None:
-        """Copy the rows of balls into the host's state."""
+    def get(self, names: Sequence[str]) -> None:
+        """Copy rows of some arrays of `READ` into the host's state."""
         self.sort_host()
-        for name in READ:
-            getattr(self._state, name)[self._owned] = self.arrays[name].get()[: self.count]
+        for name in names:
+            getattr(self._state, name)[self._owned] = self.arrays[name].get(0, self.count)
 
     def keep_loads(self) -> None:
         """Keep the loads of contacts as those of the last step's beginning."""

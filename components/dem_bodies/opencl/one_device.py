@@ -133,7 +133,7 @@ class OneDevice(OneRank):
         Pairs cost more: after a search on the device the host indexes all of them.
         """
         if names:
-            self._host.read_rows()
+            self._host.read_rows(*names)
         else:
             self._host.read()
         return self.model, self.state

@@ -153,13 +153,13 @@ class SeveralDevices(SeveralRanks):
 
     def motion(self) -> Sequence[Numbers]:
         """Position, velocity, orientation and angular velocity of all bodies, on rank 0."""
-        self._host.read_rows()
+        self._host.read_rows("motion", "orientation")
         return super().motion()
 
     def whole(self, *names: str) -> tuple[Model, State]:
         """Model and some arrays of the state, or all with the pairs, of all rows on rank 0."""
         if names:
-            self._host.read_rows()
+            self._host.read_rows(*names)
         else:
             self._host.read()
         return super().whole(*names)

@@ -11,7 +11,7 @@ from dem_scenes import FLOOR, box, disc, material, params, run, sphere
 
 from quintet.components.dem_bodies.component import DemBodies
 from quintet.components.dem_bodies.params import DemBodiesParams
-from quintet.components.dem_bodies.state import DEEPEST_PAIR
+from quintet.components.dem_bodies.state import COLUMNS, DEEPEST_PAIR
 from quintet.interfaces.component import Resources
 from quintet.interfaces.errors import SceneError, StepError
 
@@ -24,6 +24,7 @@ from quintet.components.dem_bodies.opencl.refusal import (
     refuse_what_needs_the_processor,
 )
 from quintet.components.dem_bodies.opencl.search import Search
+from quintet.components.shared.opencl.arrays import DeviceArray
 from quintet.components.shared.opencl.devices import Device, is_accelerator_there
 
 DEVICE = Resources(device="opencl")
@@ -135,6 +136,16 @@ def test_readings_are_those_of_the_processor():
     assert device.totals().internal == pytest.approx(processor.totals().internal, rel=1e-9)
     assert device.warnings().keys() == processor.warnings().keys()
     assert device.items() == processor.items() == len(heap())
+
+
+def test_totals_read_no_loads_from_a_device(monkeypatch):
+    device, read, get = advanced(spheres(DEVICE), 3), [], DeviceArray.get
+    monkeypatch.setattr(
+        DeviceArray, "get", lambda array, *rows: read.append(array.shape) or get(array, *rows)
+    )
+    device.totals()
+    rows = len(heap()) + 1
+    assert (rows, COLUMNS) in read and (rows, 6) not in read
 
 
 def test_a_device_repeats_its_bits_on_any_number_of_threads():
