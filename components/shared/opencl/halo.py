@@ -80,6 +80,10 @@ class DeviceHalo:
         """Forget the arrays that were exchanged, so that their memory can be freed."""
         self._messages = {}
 
+    def clear(self) -> None:
+        """Drop the copies."""
+        self._sent_count, self.count, self._messages = 0, 0, {}
+
     def _rows(self, of_ranks: list[Whole]) -> DeviceArray:
         """Rows of all ranks, on the device."""
         return DeviceArray.of(self.queue, np.concatenate(of_ranks).astype(np.int32))

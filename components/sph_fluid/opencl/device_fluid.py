@@ -181,11 +181,13 @@ class DeviceFluid(DeviceComponent):
         host, rows, self._is_listed = self.host, self.stepping.rows, False
         host.samples.find_rows(host.state)
         volume = relative_volume(host.samples, host.state, self.params)
-        if len(volume):
+        is_listed = len(host.state.reference) > 0  # else there are no copies and images yet
+        if is_listed and len(volume):
             host.symmetry.write_values(volume, host.state.particles)
-        host.boundary.resize(host.state, host.symmetry)
+        if is_listed:
+            host.boundary.resize(host.state, host.symmetry)
         self.stepping.passes.follow(volume, host.boundary)
-        if not isinstance(host.films, NoFilms) and len(host.state.reference):
+        if is_listed and not isinstance(host.films, NoFilms):
             host.samples.listed = rows.listed(host.samples.row)
             host.films.resize(host.state, rows.lengths())
 

@@ -42,6 +42,10 @@ class DeviceImages:
             first += len(origin)
         self.count = first - rows
 
+    def clear(self) -> None:
+        """Drop the images, in a state without lists."""
+        self._numbers, self.count = [], 0
+
     def write(self, position: DeviceArray, velocity: DeviceArray) -> None:
         """Write the images of positions (n, 4) and velocities (n, 4)."""
         for plane, numbers in zip(self._images.planes, self._numbers, strict=True):
@@ -86,8 +90,9 @@ class ImagesOfOneRank:
         return self._images.count
 
     def around(self, state: State, reach: float, boundary: BoundaryMethod) -> Around | None:
-        """Make room for images in a state with lists, and find what may be near."""
+        """Make room for images in a state with lists, and find what may be near; else drop them."""
         if not len(state.reference):
+            self._images.clear()
             return None
         around = self._host.around(state, reach, boundary.query_points(state)[0])
         self._images.follow(state.particles)

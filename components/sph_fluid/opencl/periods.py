@@ -35,11 +35,11 @@ class DevicePeriods:
         self._numbers: list[tuple[Any, ...]] = []  # of each shift: origins, count, first image
 
     def around(self, state: State, reach: float, boundary: BoundaryMethod) -> Around | None:
-        """Make room for images in a state with lists, and find what may be near."""
+        """Make room for images in a state with lists, and find what may be near; else drop them."""
+        self._numbers, self.count = [], 0
         if not len(state.reference):
             return None
         around = self._host.around(state, reach, boundary.query_points(state)[0])
-        self._numbers = []
         for shift in self._host.shifts:
             row = DeviceArray.of(self.queue, shift.origin.astype(np.int32))
             numbers = map(np.int32, (len(shift.origin), shift.images.start))

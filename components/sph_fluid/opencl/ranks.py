@@ -43,6 +43,8 @@ class DeviceCopies:
         """
         rows = state.particles
         if not len(state.reference):
+            self._halo.clear()
+            self._images.clear()
             return None
         around = self._host.around(state, reach, boundary.query_points(state)[0])
         self._halo.follow(*self._host.rows)

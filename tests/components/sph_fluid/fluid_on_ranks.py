@@ -140,6 +140,7 @@ PARAMS = {
     },
 }
 BODIES = {"body": (0.9, 0.2, 0.3)}  # m, where the box begins
+SHARES: dict[str, float] = {}  # volume of the box's samples over that of its particles, if not 1
 
 
 class Run(SolverRun):
@@ -158,6 +159,7 @@ class Run(SolverRun):
         if self.name in BODIES:
             self.arm, normal, volume = fill(BOX, SIZE, SPACING, 0.5 * SPACING)
             self.mirror = mirrors(BOX, SIZE, self.arm, normal)
+            volume = SHARES.get(self.name, 1.0) * volume
             static = {"surface.normal": normal, "surface.volume": volume}
             static["surface.body"] = np.zeros(len(normal))
             fluid.bind(static, frozenset({"surface"}))

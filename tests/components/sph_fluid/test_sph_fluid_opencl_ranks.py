@@ -15,7 +15,7 @@ NAMES = ("dam", "body")
 # With terms that are compiled for them alone.
 OTHERS = (
     "rolling", "pushed", "absorbing", "spilling", "block", "symmetric", "single", "swaying",
-    "uneven", "filmed",
+    "uneven", "filmed", "reloaded",
 )  # fmt: skip
 folder = from_the_start(PROGRAM, NAMES, 120, ranks=(1, 2, 3))
 of_others = from_the_start(PROGRAM, OTHERS, 120)
