@@ -18,8 +18,8 @@ from quintet.components.meshless_gas.diagnostics import step_error
 from quintet.components.meshless_gas.kernels.motion import STAGES
 from quintet.components.meshless_gas.opencl.features import (
     bodies_of,
-    is_alone,
     particles_of,
+    physics_of,
     terms,
 )
 from quintet.components.meshless_gas.opencl.stepping import Outcome, Stepping
@@ -51,8 +51,8 @@ class DeviceGas(DeviceComponent):
         self.params, (self.takes, self.gives) = params, self.ports_of(params)
         self.host = host = MeshlessGas(params, resources)
         self._particles = particles_of(host)
-        domain, is_shared = host.all_ranks.share(host.motion.domain), not is_alone(host)
-        self.stepping = Stepping(params, device, queue, domain, is_shared)
+        domain = host.all_ranks.share(host.motion.domain)
+        self.stepping = Stepping(params, device, queue, domain, physics_of(host))
         self.stepping.parts = terms(host, self.stepping.state, resources.device)
         self._bodies = bodies_of(host, self.stepping.parts)
         self._put()

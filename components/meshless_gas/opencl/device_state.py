@@ -8,7 +8,7 @@ from quintet.components.meshless_gas.build import Domain
 from quintet.components.meshless_gas.kernels.motion import STAGES
 from quintet.components.meshless_gas.laws.limiters import limiter_of
 from quintet.components.meshless_gas.opencl.device_cloud import DeviceCloud
-from quintet.components.meshless_gas.opencl.programs import gas_program, physics_of
+from quintet.components.meshless_gas.opencl.programs import Physics, gas_program
 from quintet.components.meshless_gas.params import MeshlessGasParams
 from quintet.components.shared.opencl.arrays import GROUP, DeviceArray
 from quintet.components.shared.opencl.devices import Device, build
@@ -29,19 +29,19 @@ class DeviceState:
     queue : pyopencl.CommandQueue
     domain : Domain
         That this rank computes.
-    is_shared : bool
-        Whether several ranks share the nodes out.
+    physics : Physics
+        For which the program is printed.
     """
 
     def __init__(
         self, params: MeshlessGasParams, device: Device, queue: Any, domain: Domain,
-        is_shared: bool,
+        physics: Physics,
     ) -> None:  # fmt: skip
         self.queue = queue
         self.tables = Tables(self.queue, device.is_processor)
         self.lanes = LANES_OF_PROCESSORS if device.is_processor else 1
         limiter = limiter_of(params.limiter, params.limiter_threshold)
-        text = gas_program(limiter, physics_of(params, is_shared), self.lanes, self.tables.by_rows)
+        text = gas_program(limiter, physics, self.lanes, self.tables.by_rows)
         # A kernel is made once: pyopencl makes another at each look.
         kernels = build(self.queue, text).all_kernels()
         self._kernels = {kernel.function_name: Kernel(self.queue, kernel) for kernel in kernels}

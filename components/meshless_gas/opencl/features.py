@@ -9,12 +9,38 @@ from typing import TYPE_CHECKING, Any
 from quintet.components.meshless_gas.component import MeshlessGas
 from quintet.components.meshless_gas.opencl.device_state import DeviceState
 from quintet.components.meshless_gas.opencl.parts import DevicePart
+from quintet.components.meshless_gas.opencl.programs import Physics
 from quintet.components.meshless_gas.ranks.one import OneRank
 from quintet.components.shared.opencl.limits import refuse_parts
 
 if TYPE_CHECKING:
     from quintet.components.meshless_gas.opencl.bodies import DeviceBodies
     from quintet.components.meshless_gas.point_particles.point_particles import CoupledParticles
+
+
+def physics_of(gas: MeshlessGas) -> Physics:
+    """Physics for which the program of a gas is printed."""
+    params, moving = gas.params, gas.params.moving
+    return Physics(
+        planar=params.planar,
+        sloped=params.order == 2,
+        viscous=params.viscous,
+        slides=slides(gas),
+        moves=moving is not None,
+        has_axis=moving is not None and moving.axisymmetric,
+        is_shared=not is_alone(gas),
+    )
+
+
+def slides(gas: MeshlessGas) -> bool:
+    """Whether a rarefied gas slides along wall nodes of its cloud."""
+    if not gas.params.viscous:
+        return False
+    # Left out of scenes without friction.
+    from quintet.components.meshless_gas.viscous.terms import Viscous
+
+    assert isinstance(gas.friction, Viscous)
+    return len(gas.friction.rarefied) > 0
 
 
 def terms(gas: MeshlessGas, state: DeviceState, device: str) -> list[DevicePart]:

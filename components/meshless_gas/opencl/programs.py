@@ -6,7 +6,6 @@ from typing import NamedTuple
 from quintet.components.meshless_gas.laws import boundaries, fluxes, outflows, states
 from quintet.components.meshless_gas.laws.limiters import Limiter
 from quintet.components.meshless_gas.opencl.printing import named
-from quintet.components.meshless_gas.params import MeshlessGasParams
 from quintet.components.shared.opencl.arrays import GROUP
 from quintet.components.shared.opencl.program import Program
 from quintet.components.shared.opencl.types import LANES
@@ -27,20 +26,6 @@ class Physics(NamedTuple):
     moves: bool = False  # whether bodies carry clouds
     has_axis: bool = False  # whether these lie about an axis of symmetry
     is_shared: bool = False  # whether several ranks share the nodes out
-
-
-def physics_of(params: MeshlessGasParams, is_shared: bool) -> Physics:
-    """Physics that parameters ask for, of a gas that ranks share out or not."""
-    walls, moving = params.boundaries.values(), params.moving
-    return Physics(
-        planar=params.planar,
-        sloped=params.order == 2,
-        viscous=params.viscous,
-        slides=any(wall.accommodation is not None for wall in walls),
-        moves=moving is not None,
-        has_axis=moving is not None and moving.axisymmetric,
-        is_shared=is_shared,
-    )
 
 
 def gas_program(limiter: Limiter, physics: Physics, lanes: int, by_rows: bool) -> str:

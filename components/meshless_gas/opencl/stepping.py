@@ -9,6 +9,7 @@ from quintet.components.meshless_gas.kernels.motion import STAGES
 from quintet.components.meshless_gas.laws.limiters import limiter_of
 from quintet.components.meshless_gas.opencl.device_state import DeviceState, groups
 from quintet.components.meshless_gas.opencl.parts import DevicePart
+from quintet.components.meshless_gas.opencl.programs import Physics
 from quintet.components.meshless_gas.params import MeshlessGasParams
 from quintet.components.meshless_gas.parts import Stage
 from quintet.components.shared.opencl.arrays import DeviceArray
@@ -40,15 +41,15 @@ class Stepping:
     queue : pyopencl.CommandQueue
     domain : Domain
         That this rank computes.
-    is_shared : bool
-        Whether several ranks share the nodes out.
+    physics : Physics
+        For which the program is printed.
     """
 
     def __init__(
         self, params: MeshlessGasParams, device: Device, queue: Any, domain: Domain,
-        is_shared: bool,
+        physics: Physics,
     ) -> None:  # fmt: skip
-        self.state = state = DeviceState(params, device, queue, domain, is_shared)
+        self.state = state = DeviceState(params, device, queue, domain, physics)
         self.cloud, self.run = state.cloud, state.run
         self._limiter = bytes_of(limiter_of(params.limiter, params.limiter_threshold), np.float64)
         self._gamma = np.float64(params.gas.gamma)

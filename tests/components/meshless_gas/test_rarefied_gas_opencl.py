@@ -6,6 +6,7 @@ from device_gases import DEVICE, STREAM, VISCOUS, advanced, apart, both, params_
 from gases import state
 
 from quintet.components.meshless_gas.component import MeshlessGas
+from quintet.components.meshless_gas.viscous.terms import Viscous
 
 pytest.importorskip("pyopencl")
 from quintet.components.meshless_gas.opencl.device_gas import DeviceGas
@@ -64,6 +65,25 @@ def without_slip(table):
         for name, boundary in table["boundaries"].items()
     }
     return table | {"boundaries": walls}
+
+
+def test_an_accommodation_without_wall_nodes_leaves_the_gas_as_it_is_without(monkeypatch):
+    monkeypatch.setattr(Viscous, "__init__", without_rarefied_nodes(Viscous.__init__))
+    slipping, held = (
+        advanced(DeviceGas(params_of(table), DEVICE), 3)
+        for table in (BETWEEN_WALLS, without_slip(BETWEEN_WALLS))
+    )
+    same_bits(slipping.save(), held.save())
+
+
+def without_rarefied_nodes(make):
+    """Friction of a cloud in which walls with accommodation have no nodes."""
+
+    def make_without(self, *arguments):
+        make(self, *arguments)
+        self.rarefied, self.couples_walls = [], False
+
+    return make_without
 
 
 def test_a_device_that_is_no_processor_has_slipping_walls_by_columns(monkeypatch):
