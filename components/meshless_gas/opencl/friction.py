@@ -36,8 +36,9 @@ class DeviceFriction(DevicePart):
         self.walls = len(friction.rows)
         self._rows = DeviceArray.of(queue, friction.rows.astype(INDEX))
         self._above = tables.of(friction.above, INDEX)
-        self._weights, self._velocity = tables.of(friction.weights), tables.of(friction.velocity)
+        self._velocity = tables.of(friction.velocity)
         self._temperature = DeviceArray.of(queue, friction.temperature)
+        self._written = WrittenWalls(friction, state)
         self._sizes = DeviceArray.of(queue, np.sqrt((friction.areas**2).sum(axis=1)))
         self.sliding = sliding_walls(friction, state)
         whole = state.cloud.whole
@@ -68,11 +69,12 @@ class DeviceFriction(DevicePart):
 
     def write_walls(self) -> None:
         """Write the states of walls: their velocity and temperature, the gas's pressure."""
-        cloud = self.state.cloud
+        cloud, written = self.state.cloud, self._written
+        count, whole, width = map(np.int32, (written.count, cloud.whole, cloud.width))
         self.state.run(
-            "write_no_slip_walls", self.walls, *map(np.int32, (self.walls, cloud.whole)),
-            np.int32(cloud.width), self._rows, cloud.neighbours, self._weights, cloud.normals,
-            self._velocity, self._temperature, self._gamma, self._law, self.state.primitive,
+            "write_no_slip_walls", written.count, count, whole, width, written.rows,
+            cloud.neighbours, written.weights, cloud.normals, written.velocity,
+            written.temperature, self._gamma, self._law, self.state.primitive,
         )  # fmt: skip
         for sliding in self.sliding:
             sliding.write_walls(
@@ -111,6 +113,26 @@ class DeviceFriction(DevicePart):
             "write_transport", whole, np.int32(whole), self.state.primitive, self._law,
             self.transported,
         )  # fmt: skip
+
+
+class WrittenWalls:
+    """Walls whose states this rank computes.
+
+    Parameters
+    ----------
+    friction : Viscous
+        Friction of the host's gas.
+    state : DeviceState
+    """
+
+    def __init__(self, friction: Viscous, state: DeviceState) -> None:
+        part, tables, queue = friction.written, state.tables, state.queue
+        rows = friction.rows[part]
+        self.count, self.rows = len(rows), DeviceArray.of(queue, rows.astype(INDEX))
+        self.weights, self.velocity = map(
+            tables.of, (friction.weights[part], friction.velocity[part])
+        )
+        self.temperature = DeviceArray.of(queue, friction.temperature[part])
 
 
 def sliding_walls(friction: Viscous, state: DeviceState) -> "list[DeviceSliding]":

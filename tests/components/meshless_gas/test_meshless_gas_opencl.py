@@ -33,6 +33,7 @@ from quintet.interfaces.errors import SceneError, StepError
 pytest.importorskip("pyopencl")
 from quintet.components.meshless_gas.opencl.device_gas import DeviceGas
 from quintet.components.meshless_gas.opencl.features import MAKERS
+from quintet.components.meshless_gas.opencl.friction import DeviceFriction
 from quintet.components.meshless_gas.opencl.programs import Physics, gas_program
 from quintet.components.shared.opencl.devices import Device
 
@@ -222,6 +223,19 @@ def test_a_gas_on_a_device_loads_nothing_that_its_scene_leaves_out():
     left_out = ("moving.", "axis", "viscous", "ranks.several", "opencl.bodies", "opencl.ranks")
     for name in (*left_out, "opencl.axis", "opencl.friction", "opencl.sliding"):
         assert f"'{name}" not in result.stdout, name
+
+
+def test_a_rank_writes_the_walls_of_its_share_alone():
+    device = DeviceGas(params_of(VISCOUS), DEVICE)
+    friction, stepping = device.host.friction, device.stepping
+    before = stepping.state.tables.get(stepping.state.primitive)
+    disturbed = before * np.linspace(1.0, 1.2, len(before))[:, np.newaxis]
+    stepping.state.tables.put(stepping.state.primitive, disturbed)
+    friction.written = slice(3, 7)  # as on one of several ranks
+    DeviceFriction(friction, stepping.state).write_walls()
+    after = stepping.state.tables.get(stepping.state.primitive)
+    changed = np.flatnonzero((after != disturbed).any(axis=1))
+    assert np.array_equal(changed, friction.rows[3:7])
 
 
 def test_a_gas_without_friction_prints_no_laws_of_it():
