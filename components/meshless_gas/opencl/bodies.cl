@@ -51,7 +51,8 @@ __kernel void copy_states(
     __global double *primitive)
 {
     const int row = get_global_id(0);
-    if (row < count) store_state(state_at(primitive, before[row], whole), primitive, rows[row], whole);
+    if (row >= count) return;
+    store_state(state_at(primitive, before[row], whole), primitive, rows[row], whole);
 }
 
 __kernel void write_slip_walls(

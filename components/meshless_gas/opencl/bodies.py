@@ -58,16 +58,16 @@ class DeviceBodies(DevicePart):
         )
         self.held = held_walls(motion, state)
         above = [layout.above.ravel()] if self.held else []
-        self._shown = np.unique(np.concatenate([layout.walls, *above]))  # nodes that loads need
-        self._rows = whole_numbers(self._shown)
-        self._states = DeviceArray(queue, (len(STAGES) + 1, len(self._shown), 5))
+        self._load_nodes = np.unique(np.concatenate([layout.walls, *above]))
+        self._rows = whole_numbers(self._load_nodes)
+        self._states = DeviceArray(queue, (len(STAGES) + 1, len(self._load_nodes), 5))
 
     # Steps
 
     def put(self) -> None:
         """Copy the clouds as they are on the host."""
         self.state.cloud.put(self.ranks.share(self.motion.domain))
-        self._find_others()
+        self._find_foreign_nodes()
         self._put_poses()
         self._put_across()
 
@@ -89,9 +89,9 @@ class DeviceBodies(DevicePart):
         cloud, domain, rows = self.state.cloud, self.motion.domain, self.motion.fringe.written
         self.changed.put(cloud.neighbours, rows, domain.stencils.neighbours[rows])
         self.changed.put(self.state.primitive, fresh, primitive[fresh])
-        changed = np.union1d(fresh, self._others)  # ranks may own others of them from now on
+        changed = np.union1d(fresh, self._foreign_nodes)  # ranks may own other nodes from now on
         self.changed.put(self.state.conservative, changed, conservative[changed])
-        self._find_others()
+        self._find_foreign_nodes()
         cloud.put_rows(self.ranks.share(domain))
         if self.motion.layout.is_cut.any():
             self.state.tables.put(cloud.areas, domain.cloud.areas)
@@ -149,12 +149,12 @@ class DeviceBodies(DevicePart):
 
     def states_at_walls(self) -> tuple[Rows, Array]:
         """Nodes (m,) from which loads are computed, and states (4, m, 5) of the moments."""
-        return self._shown, self._states.get()
+        return self._load_nodes, self._states.get()
 
-    def _find_others(self) -> None:
+    def _find_foreign_nodes(self) -> None:
         """Find the nodes that other ranks advance: their conserved states are not exchanged."""
         domain = self.motion.domain
-        self._others = np.setdiff1d(domain.inner, self.ranks.share(domain).inner)
+        self._foreign_nodes = np.setdiff1d(domain.inner, self.ranks.share(domain).inner)
 
     # Geometry
 

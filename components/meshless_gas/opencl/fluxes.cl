@@ -34,7 +34,8 @@ __kernel void write_residuals(
     NODES_OF(i, INNER_NODE);
     States state_i = STATES_OF(i);
 #ifdef MOVING
-    const reals frame_x = GATHERED(frame, i, 0, 3, whole), frame_y = GATHERED(frame, i, 1, 3, whole);
+    const reals frame_x = GATHERED(frame, i, 0, 3, whole);
+    const reals frame_y = GATHERED(frame, i, 1, 3, whole);
     const reals frame_z = GATHERED(frame, i, 2, 3, whole);
     state_i.f1 -= frame_x, state_i.f2 -= frame_y, state_i.f3 -= frame_z;
 #endif

@@ -84,11 +84,11 @@ class DeviceFriction(DevicePart):
     def sum_flows(self, moment: int) -> None:
         """Sum the friction and the heat flux of all walls at a moment of a step."""
         cloud, first = self.state.cloud, np.int32(5 * moment * self._groups)
-        more = [argument for sliding in self.sliding for argument in sliding.arguments]
+        arguments = [argument for sliding in self.sliding for argument in sliding.arguments]
         self.state.run(
             "sum_wall_flows", self.walls, np.int32(self.walls), np.int32(cloud.whole), self._rows,
             self._above, cloud.positions, cloud.normals, self._sizes, self._velocity,
-            self._temperature, self.state.primitive, self._law, first, self._parts, *more,
+            self._temperature, self.state.primitive, self._law, first, self._parts, *arguments,
         )  # fmt: skip
 
     def flows(self) -> Array:

@@ -1,6 +1,7 @@
 /* Walls of bodies that hold the gas; see moving/kernels/held_walls.py. */
 
-static double temperature_at(__global const double *primitive, int i, int whole, double gas_constant)
+static double temperature_at(
+    __global const double *primitive, int i, int whole, double gas_constant)
 {
     return gas_temperature(
         primitive[AT(i, 0, 5, whole)], primitive[AT(i, 4, 5, whole)], gas_constant);

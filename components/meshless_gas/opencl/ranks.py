@@ -35,7 +35,7 @@ class DeviceRanks(DevicePart):
         self._follow()
 
     def _follow(self) -> None:
-        """Follow a domain that is shared out otherwise."""
+        """Update the exchanged rows if the nodes were divided among the ranks again."""
         domain, ranks = self.gas.motion.domain, self.gas.all_ranks
         assert isinstance(ranks, SeveralRanks)
         if self._domain is not domain:

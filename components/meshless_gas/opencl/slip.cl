@@ -1,4 +1,5 @@
-/* A rarefied gas along walls; see viscous/kernels/slip.py. Of walls that hold the gas lengths are 0. */
+/* A rarefied gas along walls; see viscous/kernels/slip.py. Slip and jump lengths are 0 at no-slip
+   walls. */
 
 static Shares shares_of(
     int i, int j, int k, int whole, __global const double *positions, Vector normal)

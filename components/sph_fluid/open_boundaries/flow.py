@@ -211,7 +211,7 @@ class Flow:
         self.buffer_rows = np.flatnonzero(state.role)
 
     def hold(self, state: State, rates: Rates) -> None:
-        """Let the particles of buffers move as they do, whatever acts on them."""
+        """Keep the velocity and density of buffer particles: set their rates to 0."""
         rates.rate[self.buffer_rows] = 0.0
         if len(rates.xsph_velocity):
             rates.xsph_velocity[self.buffer_rows] = 0.0

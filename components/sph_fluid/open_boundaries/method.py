@@ -21,7 +21,7 @@ class OpenBoundaries(Protocol):
         """Find the particles of buffers in a state with new lists."""
 
     def hold(self, state: State, rates: Rates) -> None:
-        """Let the particles of buffers move as they do, whatever acts on them."""
+        """Keep the velocity and density of buffer particles: set their rates to 0."""
 
     def refuse_samples(self, points: Array) -> None:
         """Refuse samples (n, 3) m of bodies in buffers."""

@@ -165,7 +165,7 @@ class DeviceFluid(DeviceComponent):
     def _sort_on_host(self) -> None:
         """Sort on the host, which drops fluid that left the tank and brings rows to their ranks.
 
-        What has come and gone on the device already stays as it is.
+        Particles that were added or removed on the device are not changed again.
         """
         self._get()
         state = self.host.state

@@ -39,7 +39,7 @@ __kernel void number_staying(
     row[k] = k + low;
 }
 
-/* Let rows of buffers move as they do, whatever acts on them. */
+/* Keep velocities and densities of buffer rows: set their rates to 0. */
 __kernel void hold(
     int split, __global const long *role, __global RATE4 *rate, __global double *drift,
     __global double *minus_rho_div_u)

@@ -39,7 +39,7 @@ class DeviceFlow:
         self._scatter, self._hold = kernels.scatter, kernels.hold
 
     def renew(self, state: State) -> None:
-        """Let particles come and go; a host's state follows in numbers and sizes alone."""
+        """Add and remove particles; the host's state gets counts and array sizes, no values."""
         chosen = self._near_faces()
         part = self._read(state, chosen)
         before = part.identity
@@ -58,13 +58,13 @@ class DeviceFlow:
         rows = self.rows
         mark = DeviceArray(rows.queue, (rows.split,), np.uint8)
         mark.clear()
-        split, assigned = np.int32(rows.split), rows.arrays["role"]
+        split, role = np.int32(rows.split), rows.arrays["role"]
         for zone in self.flow.zones:
             depth = (1.0 + 1e-9) * self.flow.reads_to(zone)  # numpy rounds otherwise
             numbers = map(np.float64, (zone.face, zone.inward, depth))
             run(
                 rows.queue, self._mark, rows.split, split, np.int32(zone.axis), *numbers,
-                rows.position, assigned, mark,
+                rows.position, role, mark,
             )  # fmt: skip
         return np.flatnonzero(mark.get())
 
@@ -86,7 +86,7 @@ class DeviceFlow:
         return replace(state, **columns, exit_face=state.exit_face[chosen])
 
     def _write(self, part: State, row: Whole) -> None:
-        """Write the first rows of a state to these rows (k,) of the device."""
+        """Copy the first k rows of a state to rows (k,) of the device."""
         rows, count = self.rows, np.int32(len(row))
         key = DeviceArray.of(rows.queue, row)
         for name in CHANGED:
@@ -117,7 +117,7 @@ class DeviceFlow:
         rows.make_room()
 
     def hold(self, rate: DeviceArray, drift: DeviceArray | None) -> None:
-        """Let the rows of buffers move as they do: no rates (n, 4), no drift (fluid, 3)."""
+        """Keep velocities and densities of buffer rows: set rates (n, 4), drift (fluid, 3) to 0."""
         rows, minus_rho_div_u = self.rows, self.rows.arrays["minus_rho_div_u"]
         damped = minus_rho_div_u if minus_rho_div_u.shape[0] else None
         numbers = (np.int32(rows.split), rows.arrays["role"])

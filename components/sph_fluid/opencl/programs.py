@@ -36,12 +36,13 @@ def rows_program(
     lanes: int,
     forces: "FrameForces | None" = None,
     damps: bool = False,
-    more: str = "",
+    kernel_sources: str = "",
 ) -> str:
     """Sorting, searching, the boundary and steps: always in double precision.
 
     `precision` is that of the rates, of which steps are made; `forces` are those of a frame that
-    moves; `damps` tells whether there are damping zones; `more` are further kernels.
+    moves; `damps` tells whether there are damping zones; `kernel_sources` has the
+    kernels of further parts.
     """
     program, constants = Program("double", lanes), law.constants
     search = cells.source(program)
@@ -85,7 +86,7 @@ def rows_program(
         ]
         sources.append("damping")
     shared, of_fluid = kernels("lanes", "gather"), kernels(*sources, folder=HERE)
-    return "\n".join([program.text, *names, search, *shared, *of_fluid, more])
+    return "\n".join([program.text, *names, search, *shared, *of_fluid, kernel_sources])
 
 
 def pairs_program(law: PairLaw, precision: Precision, lanes: int, apparent: bool = False) -> str:

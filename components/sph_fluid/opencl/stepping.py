@@ -75,8 +75,8 @@ class Stepping:
         precision: Precision = "double" if params.precision == "float64" else "single"
         law, lanes = pair_law(params), LANES_OF_PROCESSORS if is_processor else 1
         damps = not isinstance(damping, NoDamping)
-        more = copies.source + open_source(open_boundaries)
-        text = rows_program(law, precision, lanes, frame.forces, damps, more)
+        kernel_sources = copies.source + open_source(open_boundaries)
+        text = rows_program(law, precision, lanes, frame.forces, damps, kernel_sources)
         kernels = build(self.queue, text)
         self._of_films = kernels.film_sides, kernels.fluid_share
         behind = copies.make(self.queue, kernels)

@@ -1,4 +1,4 @@
-"""What a rarefied gas has at a wall: a velocity and a temperature of its own, by its slopes there.
+"""Velocity slip and temperature jump of a rarefied gas at walls, from the gradients there.
 
     u - u_w = (2 - σ)/σ λ (∂u_t/∂n - κ (u - u_w)) + 3/4 μ/(ρT) ∇_t T
     T - T_w = (2 - α)/α 2γ/(γ + 1)/Pr λ ∂T/∂n
