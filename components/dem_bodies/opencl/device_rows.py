@@ -47,7 +47,7 @@ class DeviceRows:
         }
         self.listed = DeviceArray(queue, (self.count, 3))
         self.inverse = DeviceArray(queue, (self.count, 2))
-        self.body, self.material = (DeviceArray(queue, (self.count,), np.int64) for _ in range(2))
+        self.body = DeviceArray(queue, (self.count,), np.int64)
         self._spare: dict[int, DeviceArray] = {}  # buffers for sorting, by their number of words
         self.is_sorted_apart = False  # whether the host's rows have another order
         self._packed: DeviceArray | None = None
@@ -63,7 +63,6 @@ class DeviceRows:
         inverses = model.inverse_mass[owned], model.inverse_moment[owned]
         self.inverse.put(np.column_stack(inverses))
         self.body.put(state.body[owned])
-        self.material.put(model.material[owned])
         self.is_sorted_apart = False
 
     def _rows_of(self, name: str) -> Numbers:
@@ -84,7 +83,7 @@ class DeviceRows:
 
     def sorted_arrays(self) -> list[DeviceArray]:
         """Arrays that have a row for each ball."""
-        return [*self.arrays.values(), self.inverse, self.body, self.material]
+        return [*self.arrays.values(), self.inverse, self.body]
 
     def spare_of(self, array: DeviceArray) -> DeviceArray:
         """Room for a copy of an array."""

@@ -63,6 +63,8 @@ class OneDevice(OneRank):
         balls = self.lists.balls
         assert balls is not None
         self.rows.put()
+        if self._search is not None:
+            self._search.put()
         self.lists.take(pairs_of_host(self.rows.queue, self.model, balls, all_pairs(balls)))
         self.lists.note_contacts()
         self.stages.follow(self.lists.device_pairs)

@@ -43,17 +43,22 @@ class Search:
         self, kernels: Any, rows: DeviceRows, model: Model, skin: float, rolls: bool
     ) -> None:
         queue = rows.queue
-        self._rows, self._rolls = rows, rolls
+        self._rows, self._model, self._rolls = rows, model, rolls
         self._kernels = {name: opencl().Kernel(kernels, name) for name in KERNELS}
         self._skin = np.float64(skin)
         radius = float(model.bounding_radius.max())
         self._width = np.float64(2.0 * radius + skin)
         self._planes, self._materials = len(model.plane), len(model.material_pairs)
+        self._material = DeviceArray(queue, (rows.count,), np.int64)
         self._plane_material = DeviceArray.of(queue, model.plane_material)
         self._material_pairs = DeviceArray.of(queue, model.material_pairs)
 
     def _run(self, name: str, items: int, *arguments: Any) -> None:
         run(self._rows.queue, self._kernels[name], items, *arguments)
+
+    def put(self) -> None:
+        """Copy the materials of the host's rows to the device."""
+        self._material.put(self._model.material[: self._rows.count])
 
     def renew(self, former: DevicePairs) -> Listed:
         """Sort the rows, list their pairs, and take over the history of the former ones."""
@@ -76,7 +81,7 @@ class Search:
     def _sort_rows(self, key: DeviceArray) -> None:
         """Bring all rows into the order of keys, and note where they are listed."""
         rows, balls = self._rows, np.int32(self._rows.count)
-        for array in rows.sorted_arrays():
+        for array in (*rows.sorted_arrays(), self._material):
             source, words = rows.spare_of(array), np.int32(np.prod(array.shape[1:]))
             source.copy_from(array)
             self._run("take_rows", rows.count, balls, words, key, source, array)
@@ -135,6 +140,6 @@ class Search:
         )  # fmt: skip
         self._run(
             "write_constants", pairs.count, count, rows_with_ground, np.int32(self._materials),
-            pairs.row, pairs.partner, rows.arrays["motion"], rows.inverse, rows.material,
+            pairs.row, pairs.partner, rows.arrays["motion"], rows.inverse, self._material,
             self._plane_material, self._material_pairs, pairs.constants_row, pairs.constants,
         )  # fmt: skip

@@ -36,7 +36,7 @@ class SharedDeviceLists(DeviceLists, SharedLists):
             sum(map(len, self.loads.arrived)),
         )
 
-    def _link_loads(self, rows: slice) -> None:
+    def _make_slots(self) -> None:
         """Assign slots to loads received from other ranks, after those of own pairs."""
         partner, balls = self.balls.partner.astype(np.int64), self.rows.owned_balls
         of_balls = np.flatnonzero(partner < self.shares.rows)

@@ -155,21 +155,17 @@ class SharedLists(ContactLists):
         shares, pairs = self.shares, self.balls
         all_pairs = np.concatenate(share(shares.communicator, np.array([len(pairs.partner)])))
         self.pairs_before, self.pairs = int(all_pairs[: shares.rank].sum()), int(all_pairs.sum())
-        self._link_motion(self.rows.owned)
-        self._link_loads(self.rows.owned)
-
-    def _link_motion(self, rows: slice) -> None:
-        shares = self.shares
-        partner = self.balls.partner.astype(np.int64)
-        beyond = np.unique(partner[(partner >= rows.stop) & (partner < shares.rows)])
+        partner = pairs.partner.astype(np.int64)
+        beyond = np.unique(partner[(partner >= self.rows.owned.stop) & (partner < shares.rows)])
         owner = shares.owners(beyond)
         self.needed = [beyond[owner == rank] for rank in range(shares.size)]
         self.asked = send_rows(shares.communicator, self.needed)
-        self.motion_halo = Halo(shares.communicator, self.asked, self.needed, (COLUMNS,))
+        self._make_slots()
 
-    def _link_loads(self, rows: slice) -> None:
-        """Put the loads of other ranks' pairs behind own ones, in the order of one rank's pairs."""
-        shares, pairs = self.shares, self.balls
+    def _make_slots(self) -> None:
+        """Make slots for motion and loads from other ranks, for loads in the order of all pairs."""
+        shares, pairs, rows = self.shares, self.balls, self.rows.owned
+        self.motion_halo = Halo(shares.communicator, self.asked, self.needed, (COLUMNS,))
         partner, row = pairs.partner.astype(np.int64), pairs.row.astype(np.int64)
         leaves = ((row // BLOCK + 1) * BLOCK <= partner) & (partner < shares.rows)
         count = int(np.count_nonzero(leaves))
