@@ -128,6 +128,11 @@ GONE = -1e15  # m, offset of a plane that has vanished: everything is far above 
 
 # Columns of motion.
 RADIUS, VELOCITY, OMEGA, END_VELOCITY, END_OMEGA, COLUMNS = 3, 4, 7, 10, 13, 16
+# Arrays of `State` that go with a row that moves to another rank, with their widths.
+MOVED = {
+    "motion": COLUMNS, "orientation": 4, "contact_load": 6, "previous_contact_load": 6, "load": 6,
+    "world_inverse_inertia": 6,
+}  # fmt: skip
 
 # What stands in the report, and in the sums of each block of rows.
 SMALLEST_GAP = 0  # m, of any pair

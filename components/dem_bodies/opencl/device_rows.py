@@ -5,13 +5,12 @@ from typing import Any
 
 import numpy as np
 
-from quintet.components.dem_bodies.state import COLUMNS, Model, Numbers, State, Whole, sort_rows
+from quintet.components.dem_bodies.state import MOVED, Model, Numbers, State, Whole, sort_rows
 from quintet.components.shared.opencl.arrays import DeviceArray, run
 from quintet.components.shared.opencl.devices import opencl
 
 # Arrays of `State` that a device changes; the ground, behind all balls, has them on the host.
 READ = ("motion", "orientation", "contact_load", "previous_contact_load")
-WIDTHS = dict(zip((*READ, "load"), (COLUMNS, 4, 6, 6, 6), strict=True))
 NO_ROWS: Whole = np.zeros(0, np.int64)
 
 
@@ -42,7 +41,7 @@ class DeviceRows:
         self.count, self.copies = owned.stop - owned.start, len(copied)
         self._pack = opencl().Kernel(kernels, "pack_motion")
         self.arrays = {
-            name: DeviceArray(queue, (self.count + self.copies + 1, WIDTHS[name]))
+            name: DeviceArray(queue, (self.count + self.copies + 1, MOVED[name]))
             for name in (*READ, "load")
         }
         self.listed = DeviceArray(queue, (self.count, 3))

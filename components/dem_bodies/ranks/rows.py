@@ -6,15 +6,10 @@ import numpy as np
 
 from quintet.components.dem_bodies.ranks.shares import Shares
 from quintet.components.dem_bodies.ranks.sparse import SparseArrays
-from quintet.components.dem_bodies.state import COLUMNS, Model, State, Whole
+from quintet.components.dem_bodies.state import MOVED, Model, State, Whole
 from quintet.components.shared.domain.exchange import send_rows
 from quintet.interfaces.component import Array, Fields
 
-# Of a row that moves to another rank, with their widths.
-MOVED = {
-    "motion": COLUMNS, "orientation": 4, "contact_load": 6, "previous_contact_load": 6, "load": 6,
-    "world_inverse_inertia": 6,
-}  # fmt: skip
 OF_ALL = ("body", "row", "report")  # that every rank has whole
 # Arrays of the model that the kind of a ball determines, and arrays that only other bodies need.
 OF_KINDS = (
