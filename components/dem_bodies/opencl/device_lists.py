@@ -14,11 +14,11 @@ class DeviceLists(ContactLists):
 
     def count_contacts(self, listed: bool = False) -> int:
         """Most contacts of any row; with `listed` as if all listed pairs touched."""
-        return super().count_contacts(listed) if listed else self.touching
+        return ContactLists.count_contacts(self, listed) if listed else self.touching
 
     def note_contacts(self) -> None:
         """Count the contacts of pairs whose history is on the host."""
-        self.touching = super().count_contacts()
+        self.touching = ContactLists.count_contacts(self)
 
     def take(self, pairs: DevicePairs) -> None:
         """Take pairs that were copied to the device."""

@@ -20,6 +20,14 @@ class SharedDeviceLists(DeviceLists, SharedLists):
         """Rows of other ranks of which the device needs copies, rising."""
         return np.concatenate(self.needed)
 
+    def count_contacts(self, listed: bool = False) -> int:
+        """Most contacts of any row of all ranks; collective with `listed`."""
+        return SharedLists.count_contacts(self, listed) if listed else self.touching
+
+    def note_contacts(self) -> None:
+        """Count the contacts of all ranks' pairs whose history is on the host; collective."""
+        self.touching = SharedLists.count_contacts(self)
+
     def numbered(self) -> NumberedPairs:
         """Pairs by the numbers of the device's rows."""
         owned, copied, pairs = self.rows.owned_balls, self.copied, self.balls
