@@ -25,9 +25,6 @@ from quintet.components.shared.search.verlet_list import slack
 from quintet.interfaces.component import Fields, Resources
 from quintet.interfaces.errors import SceneError, StepError
 
-# Pairs that a work item of a processor computes together (SIMD lanes); 1 on other devices.
-LANES_OF_PROCESSORS = 4
-
 
 class OneDevice(OneRank):
     """Steps all rows on a device.
@@ -48,7 +45,7 @@ class OneDevice(OneRank):
         super().__init__(state, lists, threads=1)
         balls = lists.balls
         assert balls is not None
-        lanes = LANES_OF_PROCESSORS if device.is_processor else 1
+        lanes = programs.LANES_OF_PROCESSORS if device.is_processor else 1
         rolls = balls.rolling_moment is not None
         kernels = build(queue, programs.source(rolls, lanes))
         self.rows = DeviceRows(queue, kernels, self.model, state, slice(0, len(balls.begin) - 1))

@@ -29,6 +29,8 @@ from quintet.components.shared.search.cells import LAYER, ROW, key_of
 
 HERE = Path(__file__).parent
 VECTOR, TURN = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0)
+# Pairs that a work item of a processor computes together (SIMD lanes); 1 on other devices.
+LANES_OF_PROCESSORS = 4
 WIDTH = 3  # vectors of four numbers of a pair's constants
 # Columns of the numbers that kernels reduce over all rows or pairs: sums first, then maxima.
 # Works [J]; square of the way since pairs were listed [m²], and whether an orientation is not

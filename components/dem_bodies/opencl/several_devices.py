@@ -15,7 +15,6 @@ from quintet.components.dem_bodies.opencl import programs
 from quintet.components.dem_bodies.opencl.device_lists import HostCopy
 from quintet.components.dem_bodies.opencl.device_pairs import pairs_of_host
 from quintet.components.dem_bodies.opencl.device_rows import DeviceRows
-from quintet.components.dem_bodies.opencl.one_device import LANES_OF_PROCESSORS
 from quintet.components.dem_bodies.opencl.report import root, write_report
 from quintet.components.dem_bodies.opencl.shared_lists import SharedDeviceLists
 from quintet.components.dem_bodies.opencl.stages import IS_SUM, Reduced, Stages, reduced_of
@@ -54,7 +53,7 @@ class SeveralDevices(SeveralRanks):
         require_doubles(device, resources.device)
         super().__init__(rows, lists, threads=1)
         self._queue = queue
-        self._lanes = LANES_OF_PROCESSORS if device.is_processor else 1
+        self._lanes = programs.LANES_OF_PROCESSORS if device.is_processor else 1
         rolls = lists.balls.rolling_moment is not None
         self._kernels = build(queue, programs.source(rolls, self._lanes) + halo.source())
         parts = self.shares.communicator, queue, self._kernels

@@ -14,7 +14,10 @@ from quintet.components.particle_dynamics.build import Built
 from quintet.components.particle_dynamics.kernels.motion import EARLY
 from quintet.components.particle_dynamics.opencl.copies import Copies
 from quintet.components.particle_dynamics.opencl.device_points import ON_DEVICE, DevicePoints
-from quintet.components.particle_dynamics.opencl.programs import lattice_program
+from quintet.components.particle_dynamics.opencl.programs import (
+    LANES_OF_PROCESSORS,
+    lattice_program,
+)
 from quintet.components.particle_dynamics.opencl.stages import Stages
 from quintet.components.particle_dynamics.state import TIME, State, Whole
 from quintet.components.shared.opencl.cells import Cells
@@ -28,7 +31,6 @@ if TYPE_CHECKING:
     from quintet.components.particle_dynamics.ranks.several import SeveralRanks
 
 MOST_AT_ONCE = 50  # steps without a look at how far points have moved
-LANES_OF_PROCESSORS = 4  # doubles in one of its vectors; other devices make lanes of points
 
 
 class DeviceRows:

@@ -24,6 +24,7 @@ HERE = Path(__file__).parent
 NO_DAMPING = PairDamping(0.0, 0.0, 0.0, 0.0)
 VECTOR = (0.0, 0.0, 0.0)
 FAR = 4.0  # spacings: the pair force ends at two
+LANES_OF_PROCESSORS = 4  # doubles in one of its vectors; other devices make lanes of points
 FREE, FROZEN, COPY = -1, -2, -3  # roles of points; those of a bath have its row
 NUMBERS = {
     "WORK": WORK, "PULL_FIRST": PULL_FIRST, "PULL_SECOND": PULL_SECOND, "FROZEN": FROZEN,

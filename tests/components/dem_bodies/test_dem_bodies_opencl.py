@@ -16,7 +16,7 @@ from quintet.interfaces.component import Resources
 from quintet.interfaces.errors import SceneError, StepError
 
 pytest.importorskip("pyopencl")
-from quintet.components.dem_bodies.opencl import one_device
+from quintet.components.dem_bodies.opencl import one_device, programs
 from quintet.components.dem_bodies.opencl.refusal import (
     SUPPORTED,
     SUPPORTED_IN,
@@ -158,7 +158,7 @@ def test_a_device_repeats_its_bits_on_any_number_of_threads():
 @pytest.mark.skipif(is_accelerator_there(), reason="lanes of pairs are for processors")
 def test_lanes_of_pairs_are_close_to_single_pairs(monkeypatch):
     first = advanced(spheres(DEVICE), 100)
-    monkeypatch.setattr(one_device, "LANES_OF_PROCESSORS", 1)
+    monkeypatch.setattr(programs, "LANES_OF_PROCESSORS", 1)
     require_close(first, advanced(spheres(DEVICE), 100), 1e-12)
 
 
@@ -182,7 +182,7 @@ LISTED = {
 @pytest.mark.parametrize("case", LISTED)
 def test_pairs_that_a_device_lists_are_those_of_the_host(case, monkeypatch):
     count, materials, settings = LISTED[case]
-    monkeypatch.setattr(one_device, "LANES_OF_PROCESSORS", 1)
+    monkeypatch.setattr(programs, "LANES_OF_PROCESSORS", 1)
     saved, searches, renew = [], [], Search.renew
     monkeypatch.setattr(
         Search, "renew", lambda self, former: searches.append(former) or renew(self, former)
