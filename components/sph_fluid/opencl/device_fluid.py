@@ -177,17 +177,17 @@ class DeviceFluid(DeviceComponent):
         self._put()
 
     def _follow_lists(self) -> None:
-        """Let the host and the passes over pairs follow new lists."""
+        """Let the host and the passes over pairs follow new lists, if the state has lists."""
         host, rows, self._is_listed = self.host, self.stepping.rows, False
         host.samples.find_rows(host.state)
+        if not len(host.state.reference):
+            return  # without lists there are no copies and images
         volume = relative_volume(host.samples, host.state, self.params)
-        is_listed = len(host.state.reference) > 0  # else there are no copies and images yet
-        if is_listed and len(volume):
+        if len(volume):
             host.symmetry.write_values(volume, host.state.particles)
-        if is_listed:
-            host.boundary.resize(host.state, host.symmetry)
+        host.boundary.resize(host.state, host.symmetry)
         self.stepping.passes.follow(volume, host.boundary)
-        if is_listed and not isinstance(host.films, NoFilms):
+        if not isinstance(host.films, NoFilms):
             host.samples.listed = rows.listed(host.samples.row)
             host.films.resize(host.state, rows.lengths())
 

@@ -11,7 +11,7 @@ from quintet.components.shared.opencl.prelude import Precision
 from quintet.components.shared.opencl.types import bytes_of
 from quintet.components.shared.single_precision import rounded
 from quintet.components.sph_fluid.boundary.method import BoundaryMethod
-from quintet.components.sph_fluid.constants import NO_POTENTIAL, pair_law
+from quintet.components.sph_fluid.constants import pair_law
 from quintet.components.sph_fluid.laws import ContactPotential, PairLaw
 from quintet.components.sph_fluid.motion.frame import Frame, StillFrame
 from quintet.components.sph_fluid.opencl.device_state import DeviceState
@@ -61,7 +61,9 @@ class Passes:
         self._real = np.float64 if precision == "double" else np.float32
         self._constants = bytes_of(pair_law(params).constants, np.float64)
         self._gravity = np.array([*params.gravity, 0.0], self._real)
-        self._build(NO_POTENTIAL, own_volume=False)
+        # Contact potential and whether rows have volumes, for which the sums were compiled; the
+        # first lists say which.
+        self._built_for: tuple[ContactPotential, bool] | None = None
 
     def _build(self, contact: ContactPotential, own_volume: bool) -> None:
         """Compile the sums over pairs, with or without volumes of boundary particles."""

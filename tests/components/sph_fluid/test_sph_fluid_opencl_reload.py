@@ -1,10 +1,12 @@
-"""A device fluid with images returns to a state saved before its first step."""
+"""A device fluid before its first step: what it compiles, and a return to that state."""
 
 import numpy as np
 import pytest
 from device_bodies import DEVICE, JOINED, MIRRORED, Cube, around
 
 pytest.importorskip("pyopencl")
+from quintet.components.shared.opencl.devices import build
+from quintet.components.sph_fluid.opencl import passes
 from quintet.components.sph_fluid.opencl.device_fluid import DeviceFluid
 
 START = np.array([0.3, 0.25, 0.25])  # m, centre of the cube
@@ -19,6 +21,19 @@ def joined_fluid(params, share, is_contact):
         static["surface.contact"] = np.ones(len(cube.arm))
     fluid.bind(static, JOINED)
     return fluid, cube
+
+
+def test_the_sums_over_pairs_are_compiled_once(monkeypatch):
+    programs = []
+
+    def counted_build(*arguments):
+        programs.append(build(*arguments))
+        return programs[-1]
+
+    monkeypatch.setattr(passes, "build", counted_build)
+    fluid, cube = joined_fluid(around(START, **MIRRORED), share=0.8, is_contact=True)
+    cube.push(fluid, STEPS)
+    assert len(programs) == 1
 
 
 @pytest.mark.parametrize("images", ["symmetry", "periodic"])
