@@ -38,8 +38,11 @@ class DeviceFlow:
         self._mark, self._number = kernels.mark_near_face, kernels.number_staying
         self._scatter, self._hold = kernels.scatter, kernels.hold
 
-    def renew(self, state: State) -> None:
-        """Add and remove particles; the host's state gets counts and array sizes, no values."""
+    def renew(self, state: State) -> bool:
+        """Add and remove particles; return whether there were any.
+
+        The host's state gets counts and array sizes, no values.
+        """
         chosen = self._near_faces()
         part = self._read(state, chosen)
         before = part.identity
@@ -49,9 +52,11 @@ class DeviceFlow:
         self._write(part, chosen[stays])
         count = int(stays.sum())
         removed, added = chosen[~stays], part.fluid - count
-        if len(removed) or added:
-            self._replace(removed, part, count)
-            resize_fluid(state, removed, added)
+        if not (len(removed) or added):
+            return False
+        self._replace(removed, part, count)
+        resize_fluid(state, removed, added)
+        return True
 
     def _near_faces(self) -> Whole:
         """Rows (k,) that the host needs, in order."""

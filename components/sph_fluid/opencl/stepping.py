@@ -100,11 +100,14 @@ class Stepping:
         return Extremes(acceleration, float(approach), moved, speed, float(np.isinf(speed2)))
 
     def renew(self, state: State) -> bool:
-        """Let particles come and go by inflows and outflows; return whether there are any."""
+        """Add and remove particles at inflows and outflows; return whether rows were written.
+
+        Where there are inflows and outflows, rows near them are always written.
+        """
         if self._open_rows is None:
             return False
-        self._open_rows.renew(state)
-        self.passes.resize()
+        if self._open_rows.renew(state):
+            self.passes.resize()
         return True
 
     def damp(self, state: State, dt: float, speed: float) -> float:

@@ -71,6 +71,16 @@ def test_rows_sorted_on_the_host_have_the_bits_of_those_sorted_on_the_device(mon
         assert np.array_equal(array, second[key], equal_nan=True), key
 
 
+def test_room_for_pairs_is_made_again_only_where_fluid_came_or_went():
+    device = advanced(DeviceFluid(params_of(TUBE), DEVICE), 60)
+    stepping, state = device.stepping, device.host.state
+    stepping.renew(state)  # what is due has now come and gone
+    count, rate = state.fluid, stepping.passes.rate
+    assert stepping.renew(state)  # rows were written
+    assert state.fluid == count
+    assert stepping.passes.rate is rate
+
+
 @pytest.mark.parametrize("changes", [{}, {"integration": "symplectic"}])
 def test_threads_and_a_saved_state_change_no_bit(changes):
     params = params_of(TUBE, **changes)
