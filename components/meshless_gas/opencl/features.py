@@ -46,10 +46,13 @@ def slides(gas: MeshlessGas) -> bool:
 def terms(gas: MeshlessGas, state: DeviceState, device: str) -> list[DevicePart]:
     """Parts of a gas on a device, in the order of their terms.
 
+    All parts of a gas have a counterpart on devices. A part that is new on the processor is
+    refused until it has one: a step on a device would leave it out.
+
     Raises
     ------
     SceneError
-        Of parts that only a step on the processor calls.
+        For parts without a counterpart.
     """
     names = [type(part).__name__ for part in gas.parts]
     refuse_parts([name for name in names if name not in {*MAKERS, *ABSENT}], device, "a gas")

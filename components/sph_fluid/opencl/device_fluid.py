@@ -20,7 +20,6 @@ import numpy as np
 
 from quintet.components.shared.opencl.device_component import DeviceComponent
 from quintet.components.shared.opencl.devices import require_doubles
-from quintet.components.shared.opencl.limits import refuse_parts
 from quintet.components.shared.opencl.ranks import device_and_queue
 from quintet.components.shared.search.verlet_list import longest
 from quintet.components.sph_fluid import MANIFEST, diagnostics, judgement
@@ -36,11 +35,6 @@ from quintet.components.sph_fluid.setup.tait import TAIT
 from quintet.interfaces.component import Fields, Keys, Resources, Totals
 
 FIRST_DEVICE = Resources(device="opencl")
-# Parts of the host that a device has too; not all are imported.
-PARTS = {
-    "NoSymmetry", "Symmetry", "PeriodicImages", "HaloAndImages", "NoOpenBoundaries", "Flow",
-    "OneRank", "SeveralRanks",
-}  # fmt: skip
 
 
 class DeviceFluid(DeviceComponent):
@@ -58,7 +52,6 @@ class DeviceFluid(DeviceComponent):
         self.params, (self.takes, self.gives) = params, self.ports_of(params)
         self.host = SphFluid(params, replace(resources, device="cpu"))
         self.walls_move, self.items_vary = self.host.walls_move, self.host.items_vary
-        self._refuse_other_parts(resources.device)
         repeats = bool(params.boundary.periodic)
         copies = copies_on_device(self.host.symmetry, resources.communicator, repeats)
         parts = (self.host.frame, self.host.damping, copies, self.host.open_boundaries)
@@ -67,13 +60,6 @@ class DeviceFluid(DeviceComponent):
         self._speed = 0.0  # m/s, of the fastest fluid, where the scheme looks ahead by it
         self.host.make_film_rows = self.stepping.make_film_rows
         self._put()
-
-    def _refuse_other_parts(self, device: str) -> None:
-        """Refuse parts that only a step on the processor calls."""
-        host = self.host
-        parts = (host.symmetry, host.open_boundaries, host.all_ranks)
-        other_parts = [name for part in parts if (name := type(part).__name__) not in PARTS]
-        refuse_parts(other_parts, device, "a fluid")
 
     def bind(self, static: Fields, joined: Keys) -> None:
         """Make room for the samples of the surfaces joined."""

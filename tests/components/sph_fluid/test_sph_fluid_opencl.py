@@ -18,7 +18,6 @@ from quintet.interfaces.errors import SceneError
 
 pytest.importorskip("pyopencl")
 from quintet.components.shared.opencl.devices import Device
-from quintet.components.sph_fluid.opencl import device_fluid
 from quintet.components.sph_fluid.opencl.device_fluid import DeviceFluid
 
 
@@ -192,12 +191,6 @@ def test_devices_compute_every_key_of_a_fluid():
     keys = {field.name for field in fields(SphFluidParams)} - inner.keys()
     keys |= {f"{name}.{field.name}" for name, table in inner.items() for field in fields(table)}
     assert keys == COMPUTED
-
-
-def test_parts_of_the_host_that_no_key_tells_of_are_refused(monkeypatch):
-    monkeypatch.setattr(device_fluid, "PARTS", device_fluid.PARTS - {"NoSymmetry"})
-    with pytest.raises(SceneError, match=r"on device opencl, .* found NoSymmetry\. Set device"):
-        DeviceFluid(params_of(DYNAMIC), DEVICE)
 
 
 def test_a_device_that_is_not_there_is_refused():
