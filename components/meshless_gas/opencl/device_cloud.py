@@ -38,9 +38,11 @@ class DeviceCloud:
         self.put_rows(domain)
 
     def put_rows(self, domain: Domain) -> None:
-        """Copy which nodes are advanced, and the planes at outflows."""
+        """Copy which nodes are advanced or have gradients, and the planes at outflows."""
         planes = domain.outflows
-        self.inner, self.outflows = map(self._whole_numbers, (domain.inner, planes.rows))
+        self.inner, self.every, self.outflows = map(
+            self._whole_numbers, (domain.inner, domain.every, planes.rows)
+        )
         self.near = self.tables.of(planes.near, INDEX)
         self.planes = self.tables.of(planes.weights)
 

@@ -51,10 +51,12 @@ class DeviceState:
         self.gradients = empty(whole, 15)  # of these, over m
         # kg/m3, kg/(m2 s), J/m3; residuals are these over s
         self.conservative, self.start, self.residual = (empty(nodes, 5) for _ in range(3))
+        self.gradients.clear()  # covered nodes and those of other ranks have none
         # Pa, m/s, s
         self.lowest, self.sound, self.bounds = (
             DeviceArray(self.queue, (count,)) for count in (whole, whole, nodes)
         )
+        self.lowest.clear()
         # m/s, of nodes; there where some move. Kernels that need it take it as one more argument.
         self.frame = [empty(whole, 3)] if params.moving is not None else []
         for frame in self.frame:

@@ -16,14 +16,15 @@ __kernel void write_transport(
     transported[AT(i, 1, 2, whole)] = sutherland(temperature, law);
 }
 
-/* Gradients of temperature by least squares. */
+/* Gradients of temperature at some nodes, by least squares. */
 __kernel void write_temperature_slopes(
-    int nodes, int whole, int width, __global const int *neighbours,
+    int count, int whole, int width, __global const int *rows, __global const int *neighbours,
     __global const double *coefficients, __global const double *transported,
     __global double *slopes)
 {
-    const int i = get_global_id(0);
-    if (i >= nodes) return;
+    const int n = get_global_id(0);
+    if (n >= count) return;
+    const int i = rows[n];
     const double temperature = transported[AT(i, 0, 2, whole)];
     double3 slope = 0;
     for (int k = 0; k < width; k++) {

@@ -43,6 +43,7 @@ class DeviceFriction(DevicePart):
         self.sliding = sliding_walls(friction, state)
         whole = state.cloud.whole
         self.transported, self.slopes = tables.empty(whole, 2), tables.empty(whole, 3)
+        self.slopes.clear()  # as those of the state
         self._groups = groups(self.walls)
         self._parts = DeviceArray.of(queue, np.zeros((len(STAGES) + 1, self._groups, 5)))
 
@@ -50,11 +51,11 @@ class DeviceFriction(DevicePart):
         """Add rates of momentum and energy, by the gradients of this stage."""
         state, cloud = self.state, self.state.cloud
         nodes, whole, width = map(np.int32, (cloud.nodes, cloud.whole, cloud.width))
-        stencils = (cloud.neighbours, cloud.coefficients)
+        stencils, sloped = (cloud.neighbours, cloud.coefficients), cloud.every.shape[0]
         self._write_transport()
         state.run(
-            "write_temperature_slopes", cloud.nodes, nodes, whole, width, *stencils,
-            self.transported, self.slopes,
+            "write_temperature_slopes", sloped, np.int32(sloped), whole, width, cloud.every,
+            *stencils, self.transported, self.slopes,
         )  # fmt: skip
         state.run(
             "write_ghost_slopes", cloud.ghosts, nodes, whole, cloud.owner, cloud.turn,

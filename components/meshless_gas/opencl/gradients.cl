@@ -16,14 +16,16 @@ static void store_gradient(double3 slope, int q, __global double *gradients, int
     gradients[AT(i, 3 * q + 2, 15, whole)] = slope.z;
 }
 
-/* Gradients of density, velocity and pressure, and the least pressure of a node and those near. */
+/* Gradients of density, velocity and pressure at some nodes, and the least pressure of a node and
+   those near. */
 __kernel void write_gradients(
-    int nodes, int whole, int width, __global const double *primitive,
+    int count, int whole, int width, __global const int *rows, __global const double *primitive,
     __global const int *neighbours, __global const double *coefficients,
     __global double *gradients, __global double *lowest)
 {
-    const int i = get_global_id(0);
-    if (i >= nodes) return;
+    const int n = get_global_id(0);
+    if (n >= count) return;
+    const int i = rows[n];
     const State state = state_at(primitive, i, whole);
     double3 r = 0, u = 0, v = 0, w = 0, p = 0;
     double least = state.f4;

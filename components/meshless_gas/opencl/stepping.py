@@ -112,8 +112,8 @@ class Stepping:
         whole, width = np.int32(cloud.whole), np.int32(cloud.width)
         nodes, stencils = np.int32(cloud.nodes), (cloud.neighbours, cloud.coefficients)
         self.run(
-            "write_gradients", cloud.nodes, nodes, whole, width, state.primitive, *stencils,
-            state.gradients, state.lowest,
+            "write_gradients", cloud.every.shape[0], np.int32(cloud.every.shape[0]), whole, width,
+            cloud.every, state.primitive, *stencils, state.gradients, state.lowest,
         )  # fmt: skip
         self.run(
             "write_ghost_gradients", cloud.ghosts, nodes, whole, cloud.owner, cloud.turn,

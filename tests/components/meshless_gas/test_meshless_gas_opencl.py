@@ -238,6 +238,23 @@ def test_a_rank_writes_the_walls_of_its_share_alone():
     assert np.array_equal(changed, friction.rows[3:7])
 
 
+def test_a_rank_computes_gradients_where_it_needs_them_alone(monkeypatch):
+    device = DeviceGas(params_of(VISCOUS), DEVICE)
+    stepping, domain, rows = device.stepping, device.host.motion.domain, {}
+    stepping.cloud.put_rows(domain._replace(every=domain.every[:40]))  # as on one of several ranks
+    run = stepping.state.run
+
+    def noted_run(name, count, *arguments):
+        rows[name] = count
+        run(name, count, *arguments)
+
+    for part in (stepping, stepping.state):
+        monkeypatch.setattr(part, "run", noted_run)
+    device.step(1e-6)
+    assert rows["write_gradients"] == rows["write_temperature_slopes"] == 40
+    assert rows["write_bounds"] == len(domain.inner)
+
+
 def test_a_gas_without_friction_prints_no_laws_of_it():
     inviscid, viscous = (
         gas_program(limiter_of("koren", None), Physics(True, True, has_friction), 1, False)
