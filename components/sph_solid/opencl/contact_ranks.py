@@ -30,7 +30,7 @@ class DeviceContactCopies:
         """Own particles, of which there are `count`, and copies within a reach [m] of them."""
         places = np.ascontiguousarray(rows.place.get()[:count, :3])
         points, row = self._contact.find(places, reach)
-        self._halo.follow(*self._contact.rows, count)
+        self._halo.follow(*self._contact.rows)
         start = self._with_room(particles.start, count)
         self._halo.exchange(start)
         order = np.empty(len(row), np.int32)

@@ -122,7 +122,7 @@ class DeviceState:
         arrays = (self.arrays[name] for name in names)
         count = np.int32(self.count)
         run(self.queue, self._find_not_finite, self.count, count, *arrays, self.extremes)
-        return not self.cells.greatest(self.extremes, self.count).any()
+        return not (self.cells.greatest(self.extremes, self.count) > 0.0).any()
 
     def extremes_of(self, rows: DeviceArray) -> tuple[Array, Array, bool]:
         """Least and greatest (3,) of vectors in rows (n, 4), and whether one is not finite."""

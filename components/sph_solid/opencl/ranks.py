@@ -1,6 +1,6 @@
 """Copies of other ranks' particles on a device; imported only by a solid of several ranks."""
 
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -13,13 +13,6 @@ from quintet.components.sph_solid.opencl.contact_ranks import DeviceContactCopie
 from quintet.components.sph_solid.opencl.images import DeviceImages
 from quintet.components.sph_solid.ranks.several import SeveralRanks
 from quintet.components.sph_solid.state import State
-
-
-class HaloKernels(NamedTuple):
-    """Kernels of `shared/opencl/halo.cl`, retrieved once."""
-
-    pack: Any
-    unpack: Any
 
 
 class DeviceCopies:
@@ -42,8 +35,8 @@ class DeviceCopies:
         self, communicator: Any, ranks: SeveralRanks, images: DeviceImages, queue: Any, kernels: Any
     ) -> None:
         self._communicator, self._ranks, self._images = communicator, ranks, images
-        self._kernels = HaloKernels(kernels.pack, kernels.unpack)
-        self._halo = DeviceHalo(communicator, queue, self._kernels)
+        self._kernels = kernels
+        self._halo = DeviceHalo(communicator, queue, kernels)
         self.mirrors, self.with_room = images.mirrors, images.with_room
 
     def contact(self, queue: Any) -> DeviceContactCopies:
@@ -60,7 +53,7 @@ class DeviceCopies:
         """Find copies of what is near own particles, as they are sorted, and images of all."""
         self._extended = self._ranks.copy(state)
         copies = self._ranks.images
-        self._halo.follow(copies.sent, copies.received, state.particles)
+        self._halo.follow(copies.sent, copies.received)
         points, row = self._extended
         self._image_points = self._images.find_of(queue, points, state.reach, row)
 
