@@ -187,16 +187,16 @@ def refuse_on_device(params: ParticleLatticeParams, resources: Resources) -> Non
 def _on_device(resources: Resources, alone: OneRank) -> "DeviceRows":
     """All points on a device."""
     # Only a lattice on a device loads pyopencl.
-    from quintet.components.particle_dynamics.opencl.copies import NoCopies
     from quintet.components.particle_dynamics.opencl.device_rows import DeviceRows
+    from quintet.components.particle_dynamics.opencl.other_ranks import NoOtherRanks
 
-    return DeviceRows(resources, alone, NoCopies())
+    return DeviceRows(resources, alone, NoOtherRanks())
 
 
 def _on_devices(resources: Resources, shared: "SeveralRanks") -> "DeviceRows":
     """Points of this rank on its device."""
     # Only a lattice on devices of several ranks loads pyopencl and mpi4py.
     from quintet.components.particle_dynamics.opencl.device_rows import DeviceRows
-    from quintet.components.particle_dynamics.opencl.ranks import DeviceCopies
+    from quintet.components.particle_dynamics.opencl.ranks import OtherDevices
 
-    return DeviceRows(resources, shared, DeviceCopies(resources.communicator, shared))
+    return DeviceRows(resources, shared, OtherDevices(resources.communicator, shared))

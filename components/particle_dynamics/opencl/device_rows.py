@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING
 
 from quintet.components.particle_dynamics.build import Built
 from quintet.components.particle_dynamics.kernels.motion import EARLY
-from quintet.components.particle_dynamics.opencl.copies import Copies
 from quintet.components.particle_dynamics.opencl.device_points import ON_DEVICE, DevicePoints
+from quintet.components.particle_dynamics.opencl.other_ranks import OtherRanks
 from quintet.components.particle_dynamics.opencl.programs import (
     LANES_OF_PROCESSORS,
     lattice_program,
@@ -41,25 +41,26 @@ class DeviceRows:
     resources : Resources
     host : OneRank or SeveralRanks
         The same points on the host.
-    copies : Copies
-        Of other ranks' points.
+    other_ranks : OtherRanks
+        From which it gets copies of points.
     """
 
     def __init__(
-        self, resources: Resources, host: "OneRank | SeveralRanks", copies: Copies
+        self, resources: Resources, host: "OneRank | SeveralRanks", other_ranks: OtherRanks
     ) -> None:
         device, self._queue = device_and_queue(resources)
         require_doubles(device, resources.device)
-        self._host, self._copies = host, copies
+        self._host, self._other_ranks = host, other_ranks
         self.bathed, self.ids, self.skin = host.bathed, host.ids, host.skin
         self._by_rows = device.is_processor
         lanes = LANES_OF_PROCESSORS if device.is_processor else 1
         program = lattice_program(host.terms, host.model, lanes)
-        self._kernels = build(self._queue, program + copies.source)
+        self._kernels = build(self._queue, program + other_ranks.source)
         self._cells = Cells(self._queue, self._kernels, device.is_processor)
-        copies.connect(self._queue, self._kernels)
+        other_ranks.connect(self._queue, self._kernels)
         driven = host.model.driven
-        self._drive: float = copies.greatest(abs(driven.amplitude * driven.frequency))[0]  # m/s
+        speed = abs(driven.amplitude * driven.frequency)
+        self._drive: float = other_ranks.greatest(speed)[0]  # m/s
         self._put()
 
     @property
@@ -75,12 +76,12 @@ class DeviceRows:
     def _put(self) -> None:
         """Copy the host's state and lists to the device, after freeing those that it has."""
         host = self._host
-        self._copies.release()
+        self._other_ranks.release()
         for name in ("_stages", "points"):
             vars(self).pop(name, None)
         self.points = DevicePoints(self._queue, host.state, host.model, host.copies, self._by_rows)
-        self._stages = Stages(self._kernels, self.points, host.model, host.terms, self._copies)
-        self._copies.follow(self.points)
+        self._stages = Stages(self._kernels, self.points, host.model, host.terms, self._other_ranks)
+        self._other_ranks.follow(self.points)
         self._list()
 
     def _list(self) -> None:
@@ -121,7 +122,9 @@ class DeviceRows:
             done += ahead
             square, speed2 = self._cells.greatest(self.points.extremes, self.points.count)[:2]
             self.points.extremes.clear()
-            self._moved, self._speed = self._copies.greatest(math.sqrt(square), math.sqrt(speed2))
+            self._moved, self._speed = self._other_ranks.greatest(
+                math.sqrt(square), math.sqrt(speed2)
+            )
             if not slack(self.skin, self._moved) > 0.0:
                 return -1
             if self.needs_lists():
@@ -159,7 +162,7 @@ class DeviceRows:
 
     def make_lists(self) -> None:
         """List the pairs of the points where they are now."""
-        if self._copies.are_there:  # points have new rows then
+        if self._other_ranks.are_there:  # points have new rows then
             self.read()
             self._host.make_lists()
             self._put()

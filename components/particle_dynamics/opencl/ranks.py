@@ -1,4 +1,4 @@
-"""Copies of other ranks' points on a device; imported only by a lattice of several ranks."""
+"""Exchange of points on devices among ranks; imported only by a lattice of several ranks."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -12,8 +12,8 @@ from quintet.components.shared.opencl import halo
 from quintet.components.shared.opencl.arrays import DeviceArray
 
 
-class DeviceCopies:
-    """Copies among the points of one rank of several.
+class OtherDevices:
+    """Other ranks, each with a device: exchange through the hosts.
 
     Parameters
     ----------

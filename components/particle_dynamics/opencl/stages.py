@@ -7,8 +7,8 @@ import numpy as np
 
 from quintet.components.particle_dynamics.kernels.motion import DRAWN
 from quintet.components.particle_dynamics.laws import prescribed_motion
-from quintet.components.particle_dynamics.opencl.copies import Copies
 from quintet.components.particle_dynamics.opencl.device_points import DevicePoints
+from quintet.components.particle_dynamics.opencl.other_ranks import OtherRanks
 from quintet.components.particle_dynamics.opencl.programs import pair_terms
 from quintet.components.particle_dynamics.ranks.terms import Terms
 from quintet.components.particle_dynamics.state import Model
@@ -28,15 +28,20 @@ class Stages:
     points : DevicePoints
     model : Model
     terms : Terms
-    copies : Copies
-        Of other ranks' points.
+    other_ranks : OtherRanks
+        From which it gets copies.
     """
 
     def __init__(
-        self, kernels: Any, points: DevicePoints, model: Model, terms: Terms, copies: Copies
+        self,
+        kernels: Any,
+        points: DevicePoints,
+        model: Model,
+        terms: Terms,
+        other_ranks: OtherRanks,
     ) -> None:
         self._model, arrays, queue = model, points.arrays, points.queue
-        self._copies, kernel = copies, partial(opencl().Kernel, kernels)
+        self._other_ranks, kernel = other_ranks, partial(opencl().Kernel, kernels)
         self._is_driven = model.driven.first >= 0
         count, mass = np.int32(points.count), np.float64(model.mass)
         driven, laws = (
@@ -99,7 +104,7 @@ class Stages:
             self._exchange.run(np.float64(h))
             self._collide.run(np.float64(model.collision_rate * h * len(model.bonds)))
             self._place.run(half, motion)
-        self._copies.exchange()
+        self._other_ranks.exchange()
         step = (half, np.int32(is_last), np.float64(weight))
         self._close.run(*step)
         if self._is_driven:

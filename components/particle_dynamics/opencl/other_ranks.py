@@ -1,4 +1,4 @@
-"""Copies of other ranks' points on a device, and what all ranks must agree on."""
+"""What a device needs of other ranks: copies of their points, and the greatest of numbers."""
 
 from collections.abc import Sequence
 from typing import Any, Protocol
@@ -6,11 +6,11 @@ from typing import Any, Protocol
 from quintet.components.particle_dynamics.opencl.device_points import DevicePoints
 
 
-class Copies(Protocol):
-    """Copies among the points of a rank."""
+class OtherRanks(Protocol):
+    """Exchange of a rank's points on a device with other ranks."""
 
-    source: str  # kernels that they need
-    are_there: bool  # whether there may be any; then new lists come with new rows
+    source: str  # kernels that it needs
+    are_there: bool  # then there are copies among the points, and new lists come with new rows
 
     def connect(self, queue: Any, kernels: Any) -> None:
         """Take a queue, and kernels built from a text that has `source`."""
@@ -28,7 +28,7 @@ class Copies(Protocol):
         """Greatest of all ranks of each number."""
 
 
-class NoCopies:
+class NoOtherRanks:
     """No copies: one rank."""
 
     source, are_there = "", False
