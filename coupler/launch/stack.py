@@ -11,7 +11,7 @@ from pathlib import Path
 ANSWERING = 0.5  # s for a process to write its stack
 CALL = re.compile(r'^  File ".*", line (?:\d+|\?\?\?) in .*$', re.MULTILINE)
 OURS = "/serving/serve.py"  # the call that every component is called from
-COMPILER = "/numba/core/"
+COMPILER = re.compile(r'/numba/core/|/pyopencl/.*", line \d+ in _?build')
 BELOW = ("<frozen ", "/numba/", "/llvmlite/")  # calls that no author of a solver has written
 SHOWN = 8  # calls in a message
 
@@ -45,7 +45,7 @@ def of_main_thread() -> str:
 
 def compiles(stack: str) -> bool:
     """Whether a kernel is being compiled."""
-    return COMPILER in stack
+    return COMPILER.search(stack) is not None
 
 
 def innermost(stack: str) -> list[str]:

@@ -8,6 +8,7 @@ import pytest
 
 from quintet.coupler.coupling.participant import Participant
 from quintet.coupler.launch.process_probe import ProcessProbe
+from quintet.coupler.launch.stack import compiles
 from quintet.coupler.launch.watchdog import Watchdog, Watched
 from quintet.coupler.run.signals import StopRequest
 from quintet.interfaces.lines.memory import MemoryLine
@@ -71,3 +72,12 @@ def test_over_memory_it_looks_without_long_waits_for_the_lock_of_python():
     watchdog.check_wait(Watched(participant, Probe("water", os.getpid()), 60.0), 0.1)
     assert intervals and max(intervals) < 0.2 * interval
     assert sys.getswitchinterval() == interval
+
+
+def test_building_a_program_of_a_device_is_compiling_and_copying_is_not():
+    calls = '  File "/x/pyopencl/__init__.py", line {} in {}\n' + SOLVER
+    assert compiles(COMPILING)
+    assert compiles(calls.format(9, "build"))
+    assert compiles(calls.format(9, "_build_and_catch_errors"))
+    assert not compiles(calls.format(9, "enqueue_copy"))
+    assert not compiles(SOLVER)
