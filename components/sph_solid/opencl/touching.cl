@@ -8,14 +8,14 @@ static int were_apart(double4 a, double4 b, double support2)
     return d.x * d.x + d.y * d.y + d.z * d.z >= support2 || d.w != 0;
 }
 
-/* List what is within a reach of each particle and was apart from it, in ascending order of rows, or
-   of the numbers that these have in `order`. Lists that are too short
-   count on: the greatest count tells how long they must be. */
+/* List what is within a reach of each particle and was apart from it, in ascending order of rows,
+   or of the numbers that these have in `order`. Lists that are too short count on: the greatest
+   count tells how long they must be. */
 __kernel void list_touching(
     int count, __global const double4 *position, __global const double4 *start,
-    __global const int *order, double support2, double reach2, __global const long *key, Grid grid, __global const int *cell_start, int width,
-    long row_stride, long item_stride, __global int *near, __global int *end,
-    __global double4 *extremes)
+    __global const int *order, double support2, double reach2,
+    __global const long *key, Grid grid, __global const int *cell_start, int width, long row_stride,
+    long item_stride, __global int *near, __global int *end, __global double4 *extremes)
 {
     const int i = get_global_id(0);
     if (i >= count) return;
