@@ -7,7 +7,11 @@ import numpy as np
 from quintet.components.dem_bodies.contact.expected import expected_frequency
 from quintet.components.dem_bodies.contact.materials import DURATION, SPEED_UP
 from quintet.components.dem_bodies.params import DemBodiesParams
-from quintet.components.dem_bodies.shapes.flotation import flotation_notes, still_water
+from quintet.components.dem_bodies.shapes.flotation import (
+    flotation_notes,
+    refuse_longer,
+    still_water,
+)
 from quintet.components.dem_bodies.shapes.placement import cover
 from quintet.components.dem_bodies.shapes.rigid_body import RigidBody
 from quintet.components.dem_bodies.shapes.solid import is_ball, solids
@@ -38,6 +42,7 @@ def meets(params: DemBodiesParams, stated: Fields) -> tuple[str, ...]:
     downwards = params.gravity[0] == params.gravity[1] == 0.0 > params.gravity[2]
     if water is None or params.dimensions == 2 or not downwards:
         return ()
+    refuse_longer(params.placed, water)
     return flotation_notes(params.placed, water)
 
 

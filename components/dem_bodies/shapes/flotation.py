@@ -5,6 +5,7 @@ displaces below the level. It then rises or sinks until it displaces its own mas
 rest of the water follows. How it turns meanwhile is left out.
 """
 
+from collections.abc import Iterable
 from pathlib import Path
 from typing import NamedTuple
 
@@ -13,7 +14,6 @@ import numpy as np
 from quintet.components.dem_bodies.shapes.copies import Bodies
 from quintet.components.dem_bodies.shapes.placement import rotation_matrix
 from quintet.components.dem_bodies.shapes.rigid_body import RigidBody
-from quintet.components.dem_bodies.shapes.solid import measure
 from quintet.components.shared.geometry.box_faces import CORNERS, FACES
 from quintet.components.shared.geometry.displacement import displaced_volume, level_of_volume
 from quintet.components.shared.geometry.shapes import Mesh
@@ -22,6 +22,8 @@ from quintet.interfaces.errors import SceneError
 from quintet.interfaces.ports import STILL_WATER, SURFACE
 
 MOST = 20  # bodies; for more, no notes
+LONGEST = 20.0  # of a body over the diagonal of the water: a longer one is in a wrong unit
+ROUNDING = 1e-9  # of the edges of the water
 NEARLY = 0.01  # of a body's height
 FAR = 0.25  # of a body's mass: the water that it stands in differs by more than it is likely to
 
@@ -34,9 +36,19 @@ class StillWater(NamedTuple):
     density: float  # kg/m3
 
     @property
+    def size(self) -> Array:
+        """Its edges (3,) m."""
+        return self.high - self.low
+
+    @property
     def area(self) -> float:
         """Of its level [m2]."""
-        return float(np.prod((self.high - self.low)[:2]))
+        return float(np.prod(self.size[:2]))
+
+    def is_around(self, triangles: Array) -> bool:
+        """Whether triangles (t, 3, 3) m lie within its bounds along x and y."""
+        corners, rim = triangles[:, :, :2], ROUNDING * self.size[:2]
+        return bool(np.all((corners >= self.low[:2] - rim) & (corners <= self.high[:2] + rim)))
 
 
 def still_water(stated: Fields) -> StillWater | None:
@@ -49,13 +61,7 @@ def still_water(stated: Fields) -> StillWater | None:
 
 
 def flotation_notes(bodies: Bodies, water: StillWater) -> tuple[str, ...]:
-    """Say of free boxes and meshes how far they are from where they float.
-
-    Raises
-    ------
-    SceneError
-        Of a body that is longer than the diagonal of the water.
-    """
+    """Say of free boxes and meshes in or above the water how far they are from where they float."""
     if len(bodies) > MOST:
         return ()
     notes = []
@@ -63,9 +69,17 @@ def flotation_notes(bodies: Bodies, water: StillWater) -> tuple[str, ...]:
         triangles = surface_triangles(body)
         if triangles is None or ("z" in body.locked and body.released_at is None):
             continue
-        refuse_longer(number, body, triangles, water)
-        notes.append(f"bodies[{number}] {flotation(measure(body).mass, triangles, water)}")
+        if water.is_around(triangles):
+            notes.append(f"bodies[{number}] {flotation(mass_of(body), triangles, water)}")
     return tuple(notes)
+
+
+def mass_of(body: RigidBody) -> float:
+    """Mass [kg] of a box or mesh."""
+    if body.mass is not None:
+        return body.mass
+    assert body.geometry is not None and body.density is not None
+    return body.density * body.geometry.volume
 
 
 def surface_triangles(body: RigidBody) -> Array | None:
@@ -81,18 +95,35 @@ def surface_triangles(body: RigidBody) -> Array | None:
     return np.asarray(triangles @ rotation_matrix(body.orientation).T + np.array(body.position))
 
 
-def refuse_longer(number: int, body: RigidBody, triangles: Array, water: StillWater) -> None:
-    """Refuse a body that is longer than the diagonal of the water: its scale must be wrong."""
-    size, room = np.ptp(triangles, axis=(0, 1)), water.high - water.low
-    if size.max() <= np.linalg.norm(room):
-        return
-    name, remedy = "its box", "lowest and highest"
-    if body.file is not None:
-        name, remedy = f"{Path(body.file).name} at scale {body.scale or 1.0:g}", "scale"
-    raise SceneError(
-        f"bodies[{number}] must fit into the water of its partner, which is {_size(room)} m; found "
-        f"{_size(size)} m of {name}. Correct {remedy}, or the water."
-    )
+def refuse_longer(bodies: Bodies, water: StillWater) -> None:
+    """Refuse boxes and meshes that are far longer than the water: their unit must be wrong.
+
+    Raises
+    ------
+    SceneError
+        Of the first such body.
+    """
+    longest = LONGEST * float(np.linalg.norm(water.size))
+    for kind, body in enumerate(bodies.kinds):
+        size = edges(body)
+        if size is None or max(size) <= longest:
+            continue
+        number = int(bodies.first[np.argmax(bodies.kind == kind)])
+        name, remedy = "its box", "lowest and highest"
+        if body.file is not None:
+            name, remedy = f"{Path(body.file).name} at scale {body.scale or 1.0:g}", "scale"
+        raise SceneError(
+            f"bodies[{number}] must have edges of at most {longest:.4g} m, {LONGEST:g} times the "
+            f"diagonal of its partner's water of {_size(water.size)} m; found {_size(size)} m of "
+            f"{name}. Correct {remedy}, or the water."
+        )
+
+
+def edges(body: RigidBody) -> Iterable[float] | None:
+    """Edges [m] of a box, or of the box that holds a mesh as its file has it."""
+    if isinstance(body.geometry, Mesh):
+        return np.ptp(body.geometry.solid.triangles, axis=(0, 1)).tolist()
+    return body.size
 
 
 def flotation(mass: float, triangles: Array, water: StillWater) -> str:
@@ -122,5 +153,5 @@ def _remedy() -> str:
     return "Correct its height, mass, scale or orientation if that is not meant."
 
 
-def _size(edges: Array) -> str:
-    return " x ".join(f"{edge:.4g}" for edge in edges)
+def _size(lengths: Iterable[float]) -> str:
+    return " x ".join(f"{length:.4g}" for length in lengths)

@@ -52,12 +52,26 @@ def test_bodies_that_cannot_rise_and_other_waters_get_no_note():
     assert notes(**size, **ball) == ()
 
 
-def test_a_body_longer_than_the_water_is_refused():
+def test_a_spar_that_sticks_out_of_the_water_may_be_longer_than_it():
+    (note,) = notes(mass=2.0, lowest=[0.9, 0.4, 0.0], highest=[1.1, 0.6, 3.5])
+    assert note.startswith("bodies[0] weighs 2 kg and stands in 20 kg of water: ")
+
+
+def test_bodies_beside_the_water_get_no_note():
+    dry = {"mass": 4.0, "lowest": [2.5, 0.4, 0.0], "highest": [2.7, 0.6, 0.2]}
+    assert notes(**dry) == ()
+    at_the_wall = {"mass": 8.0, "lowest": [1.8, 0.8, 0.3], "highest": [2.0, 1.0, 0.5]}
+    assert len(notes(**at_the_wall)) == 1
+    assert notes(**at_the_wall | {"highest": [2.01, 1.0, 0.5]}) == ()
+
+
+def test_a_body_far_longer_than_the_water_is_refused():
     with pytest.raises(SceneError) as error:
-        notes(mass=2.0, lowest=[-1.0, 0.4, 0.4], highest=[2.0, 0.6, 0.6])
+        notes(mass=2.0, lowest=[-50.0, 0.4, 0.4], highest=[50.0, 0.6, 0.6])
     assert str(error.value) == (
-        "bodies[0] must fit into the water of its partner, which is 2 x 1 x 0.5 m; found "
-        "3 x 0.2 x 0.2 m of its box. Correct lowest and highest, or the water."
+        "bodies[0] must have edges of at most 45.83 m, 20 times the diagonal of its partner's "
+        "water of 2 x 1 x 0.5 m; found 100 x 0.2 x 0.2 m of its box. Correct lowest and highest, "
+        "or the water."
     )
 
 
