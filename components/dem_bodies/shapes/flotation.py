@@ -15,7 +15,7 @@ from quintet.components.dem_bodies.shapes.copies import Bodies
 from quintet.components.dem_bodies.shapes.placement import rotation_matrix
 from quintet.components.dem_bodies.shapes.rigid_body import RigidBody
 from quintet.components.shared.geometry.box_faces import CORNERS, FACES
-from quintet.components.shared.geometry.displacement import displaced_volume, level_of_volume
+from quintet.components.shared.geometry.displacement import Heights
 from quintet.components.shared.geometry.shapes import Mesh
 from quintet.interfaces.component import Array, Fields
 from quintet.interfaces.errors import SceneError
@@ -128,16 +128,16 @@ def edges(body: RigidBody) -> Iterable[float] | None:
 
 def flotation(mass: float, triangles: Array, water: StillWater) -> str:
     """Say what a body weighs, what it stands in, and where it floats."""
-    level = float(water.high[2])
+    level, heights = float(water.high[2]), Heights.of(triangles)
     lowest, highest = float(triangles[:, :, 2].min()), float(triangles[:, :, 2].max())
-    stands_in = water.density * displaced_volume(triangles, level)  # kg
-    most = water.density * displaced_volume(triangles, highest)  # kg
+    stands_in = water.density * heights.volume_below(level)  # kg
+    most = water.density * heights.volume_below(highest)  # kg
     text = f"weighs {mass:.4g} kg and stands in {stands_in:.4g} kg of water"
     if lowest >= level:
         text = f"weighs {mass:.4g} kg and begins {lowest - level:.3g} m above the water"
     if mass >= most:
         return f"{text}: it displaces at most {most:.4g} kg and sinks. {_remedy()}"
-    floats_at = level_of_volume(triangles, mass / water.density)  # where the level must be
+    floats_at = heights.level_of(mass / water.density)  # where the level must be
     rise = level + (mass - stands_in) / water.density / water.area - floats_at  # m, of the body
     text += f": without turning, it floats {_way(rise, highest - lowest)}"
     return f"{text}. {_remedy()}" if abs(stands_in - mass) > FAR * mass else text
