@@ -113,8 +113,10 @@ class Manifest:
     ``joins`` refuses, with a `SceneError`, what its component's `bind` would refuse: it gets the
     parameters, the static fields of partners as far as their ``initial`` has them, and the names of
     the ports that are joined.
-    ``meets`` gets the parameters and what one partner states in ``initial``. It returns sentences
-    that `check` prints, and refuses with a `SceneError` what cannot be.
+    ``surroundings`` tells what partners begin in, as still water, for the next two alone. These
+    get the parameters and the ``surroundings`` of one partner. ``meets`` refuses, with a
+    `SceneError`, what does not fit into them; as it is called whenever a scene is read, it must be
+    cheap. ``meeting_notes`` returns sentences that `check` prints.
     """
 
     kind: str
@@ -126,7 +128,9 @@ class Manifest:
     initial: Callable[[Any], Fields] | None = None
     complete: Callable[[dict[str, Any], Fields], dict[str, Any]] | None = None
     joins: Callable[[Any, Fields, Keys], None] | None = None
-    meets: Callable[[Any, Fields], tuple[str, ...]] | None = None
+    surroundings: Callable[[Any], Fields] | None = None
+    meets: Callable[[Any, Fields], None] | None = None
+    meeting_notes: Callable[[Any, Fields], tuple[str, ...]] | None = None
     bench: str = ""  # "module:function"
     conform: str = ""  # "module:function"
     patience: float = PATIENCE  # s, how long it may keep others waiting beyond three usual windows

@@ -40,8 +40,8 @@ SURFACE = Port(
 # The same with the mirror image of each sample through its surface, for fluids that ask for it.
 MIRRORED_SURFACE = replace(SURFACE, fields=(*SURFACE.fields, Field("mirror", (3,), "m")))
 SURFACE_LOAD = Port("surface_load", fields=(FORCE,), items="partner")
-# Still water in which bodies may float, with gravity along -z: what a fluid that removes the water
-# inside them states of its port `surface` before it is built, beside its requests.
+# Still water in which bodies may float, with gravity along -z: `Manifest.surroundings` of a fluid
+# that removes the water inside them.
 STILL_WATER = (
     Field("water_lowest", (3,), "m"),  # corners of the box of water
     Field("water_highest", (3,), "m"),

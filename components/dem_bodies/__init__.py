@@ -53,7 +53,7 @@ Braun, J. Rheol. 30 (1986) 949 (unloading); Thornton, Cummins & Cleary, Powder T
 """
 
 from quintet.components.dem_bodies.params import DemBodiesParams
-from quintet.components.dem_bodies.plan import meets, plan
+from quintet.components.dem_bodies.plan import meeting_notes, meets, plan
 from quintet.components.dem_bodies.ports import SHOWS, ports
 from quintet.components.dem_bodies.start import initial
 from quintet.interfaces.manifest import Manifest
@@ -70,6 +70,7 @@ MANIFEST = Manifest(
     plan=plan,
     initial=initial,
     meets=meets,
+    meeting_notes=meeting_notes,
     bench="quintet.components.dem_bodies.bench:cases",
     conform="quintet.components.dem_bodies.conform:cases",
     opencl="quintet.components.dem_bodies.component:DemBodies",

@@ -8,6 +8,7 @@ from quintet.components.dem_bodies.contact.expected import expected_frequency
 from quintet.components.dem_bodies.contact.materials import DURATION, SPEED_UP
 from quintet.components.dem_bodies.params import DemBodiesParams
 from quintet.components.dem_bodies.shapes.flotation import (
+    StillWater,
     flotation_notes,
     refuse_longer,
     still_water,
@@ -36,14 +37,22 @@ def plan(params: DemBodiesParams) -> Plan:
     return Plan(count, dt, rate=count / step, bytes_per_item=1200.0, notes=notes)
 
 
-def meets(params: DemBodiesParams, stated: Fields) -> tuple[str, ...]:
-    """How bodies float in the still water that a partner states."""
-    water = still_water(stated)
+def meets(params: DemBodiesParams, surroundings: Fields) -> None:
+    """Refuse bodies far larger than the still water that a partner has."""
+    if water := _water(params, surroundings):
+        refuse_longer(params.placed, water)
+
+
+def meeting_notes(params: DemBodiesParams, surroundings: Fields) -> tuple[str, ...]:
+    """How bodies float in the still water that a partner has."""
+    water = _water(params, surroundings)
+    return flotation_notes(params.placed, water) if water else ()
+
+
+def _water(params: DemBodiesParams, surroundings: Fields) -> StillWater | None:
+    """A partner's still water, where bodies may float in it."""
     downwards = params.gravity[0] == params.gravity[1] == 0.0 > params.gravity[2]
-    if water is None or params.dimensions == 2 or not downwards:
-        return ()
-    refuse_longer(params.placed, water)
-    return flotation_notes(params.placed, water)
+    return still_water(surroundings) if params.dimensions == 3 and downwards else None
 
 
 def _mesh_note(body: RigidBody) -> str:

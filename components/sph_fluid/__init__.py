@@ -91,7 +91,7 @@ Monaghan & Gingold, J. Comput. Phys. 52 (1983) 374; Colagrossi et al., Phys. Rev
 
 from quintet.components.sph_fluid.params import SphFluidParams
 from quintet.components.sph_fluid.plan import plan
-from quintet.components.sph_fluid.ports import SHOWS, initial, ports
+from quintet.components.sph_fluid.ports import SHOWS, ports, requests, still_water
 from quintet.interfaces.manifest import Manifest
 
 __all__ = ["MANIFEST", "SphFluidParams"]
@@ -104,7 +104,8 @@ MANIFEST = Manifest(
     component="quintet.components.sph_fluid.component:SphFluid",
     ports=ports,
     plan=plan,
-    initial=initial,
+    initial=requests,
+    surroundings=still_water,
     bench="quintet.components.sph_fluid.bench:cases",
     conform="quintet.components.sph_fluid.conform:cases",
     shows=SHOWS,

@@ -91,11 +91,6 @@ def requests(params: SphFluidParams) -> dict[str, Array]:
     return {f"surface.{name}": np.array([value]) for name, value in values.items()}
 
 
-def initial(params: SphFluidParams) -> dict[str, Array]:
-    """What a fluid states before it is built: its requests, and the water that bodies float in."""
-    return requests(params) | still_water(params)
-
-
 def still_water(params: SphFluidParams) -> dict[str, Array]:
     """The box of water that is removed inside bodies, and its density; nothing of other water."""
     x, y, z = params.hydrostatic_gravity
@@ -104,7 +99,7 @@ def still_water(params: SphFluidParams) -> dict[str, Array]:
         return {}
     values = (*params.boxes[0], params.density)
     return {
-        f"surface.{field.name}": np.array([value], np.float64)
+        field.name: np.array([value], np.float64)
         for field, value in zip(STILL_WATER, values, strict=True)
     }
 

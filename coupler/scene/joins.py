@@ -47,11 +47,12 @@ def refused_partners(
     components: Mapping[str, ComponentPlan], links: list[Link], begun: set[str]
 ) -> Iterator[str]:
     """Yield what the kinds of components refuse of their partners."""
-    for name, partner in _meetings(components, links, begun):
+    for component, partner in _meetings(components, links, begun):
         try:
-            _meet(components[name], components[partner])
+            if component.manifest.meets:
+                component.manifest.meets(component.checked, partner.surroundings())
         except SceneError as error:
-            yield from (f"components.{name}: {mistake}" for mistake in error.mistakes)
+            yield from (f"components.{component.name}: {mistake}" for mistake in error.mistakes)
 
 
 def partner_notes(
@@ -60,24 +61,23 @@ def partner_notes(
     """Sentences of components about their partners, by their names."""
     begun = {name for name, component in components.items() if component.begun}
     notes: dict[str, list[str]] = {}
-    for name, partner in _meetings(components, links, begun):
-        notes.setdefault(name, []).extend(_meet(components[name], components[partner]))
+    for component, partner in _meetings(components, links, begun):
+        if component.manifest.meeting_notes:
+            notes.setdefault(component.name, []).extend(
+                component.manifest.meeting_notes(component.checked, partner.surroundings())
+            )
     return notes
 
 
 def _meetings(
     components: Mapping[str, ComponentPlan], links: list[Link], begun: set[str]
-) -> Iterator[tuple[str, str]]:
-    """Components whose kind has something to say of partners, with each partner."""
+) -> Iterator[tuple[ComponentPlan, ComponentPlan]]:
+    """Each component with each partner that has surroundings for it."""
     for link in links:
         for name in sorted(link.ends) if begun.isdisjoint(link.ends) else ():
-            if components[name].manifest.meets is not None:
-                yield from ((name, partner) for partner in sorted(link.ends - {name}))
-
-
-def _meet(component: ComponentPlan, partner: ComponentPlan) -> tuple[str, ...]:
-    meets = component.manifest.meets
-    return meets(component.checked, partner.initial()) if meets else ()
+            for partner in sorted(link.ends - {name}):
+                if components[partner].manifest.surroundings:
+                    yield components[name], components[partner]
 
 
 def _described(

@@ -221,6 +221,10 @@ class ComponentPlan:
         """What is known of it before it is built; see `Manifest`."""
         return self.manifest.initial(self.checked) if self.manifest.initial else {}
 
+    def surroundings(self) -> Fields:
+        """What its partners begin in; see `Manifest`."""
+        return self.manifest.surroundings(self.checked) if self.manifest.surroundings else {}
+
     @property
     def shows(self) -> tuple[Field, ...]:
         """Fields of its view, as far as is known without it."""

@@ -19,7 +19,7 @@ from quintet.components.shared.geometry.displacement import Heights
 from quintet.components.shared.geometry.shapes import Mesh
 from quintet.interfaces.component import Array, Fields
 from quintet.interfaces.errors import SceneError
-from quintet.interfaces.ports import STILL_WATER, SURFACE
+from quintet.interfaces.ports import STILL_WATER
 
 MOST = 20  # bodies; for more, no notes
 LONGEST = 20.0  # of a body over the diagonal of the water: a longer one is in a wrong unit
@@ -52,11 +52,10 @@ class StillWater(NamedTuple):
 
 
 def still_water(stated: Fields) -> StillWater | None:
-    """The water that a partner states, if it does."""
-    keys = [f"{SURFACE.name}.{field.name}" for field in STILL_WATER]
-    if not stated.keys() >= set(keys):
+    """The water among what a partner states, if it is there."""
+    if any(field.name not in stated for field in STILL_WATER):
         return None
-    low, high, density = (stated[key][0] for key in keys)
+    low, high, density = (stated[field.name][0] for field in STILL_WATER)
     return StillWater(low, high, float(density))
 
 

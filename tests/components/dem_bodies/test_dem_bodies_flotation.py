@@ -5,21 +5,23 @@ import pytest
 import trimesh
 from dem_scenes import params
 
-from quintet.components.dem_bodies.plan import meets
+from quintet.components.dem_bodies.plan import meeting_notes, meets
+from quintet.components.shared.geometry.displacement import Heights
 from quintet.coupler.cli import main
+from quintet.coupler.scene.read import load
 from quintet.interfaces.errors import SceneError
 
 WATER = {
-    "surface.water_lowest": np.array([[0.0, 0.0, 0.0]]),
-    "surface.water_highest": np.array([[2.0, 1.0, 0.5]]),
-    "surface.water_density": np.array([1000.0]),
+    "water_lowest": np.array([[0.0, 0.0, 0.0]]),
+    "water_highest": np.array([[2.0, 1.0, 0.5]]),
+    "water_density": np.array([1000.0]),
 }
 CUBE = {"shape": "box", "lowest": [0.9, 0.4, 0.4], "highest": [1.1, 0.6, 0.6], "material": "a"}
 REMEDY = ". Correct its height, mass, scale or orientation if that is not meant."
 
 
 def notes(water=WATER, **body):
-    return meets(params([CUBE | body]), water)
+    return meeting_notes(params([CUBE | body]), water)
 
 
 @pytest.mark.parametrize(
@@ -66,8 +68,9 @@ def test_bodies_beside_the_water_get_no_note():
 
 
 def test_a_body_far_longer_than_the_water_is_refused():
+    long = {"lowest": [-50.0, 0.4, 0.4], "highest": [50.0, 0.6, 0.6]}
     with pytest.raises(SceneError) as error:
-        notes(mass=2.0, lowest=[-50.0, 0.4, 0.4], highest=[50.0, 0.6, 0.6])
+        meets(params([CUBE | {"mass": 2.0} | long]), WATER)
     assert str(error.value) == (
         "bodies[0] must have edges of at most 45.83 m, 20 times the diagonal of its partner's "
         "water of 2 x 1 x 0.5 m; found 100 x 0.2 x 0.2 m of its box. Correct lowest and highest, "
@@ -75,7 +78,7 @@ def test_a_body_far_longer_than_the_water_is_refused():
     )
 
 
-def test_check_says_how_a_hull_floats_and_refuses_one_in_millimetres(tmp_path, capsys):
+def test_check_says_how_a_hull_floats_and_refuses_one_in_millimetres(tmp_path, capsys, monkeypatch):
     trimesh.creation.box((200.0, 200.0, 200.0)).export(tmp_path / "block.stl")
     scene = """
     name = "block"
@@ -107,11 +110,16 @@ def test_check_says_how_a_hull_floats_and_refuses_one_in_millimetres(tmp_path, c
     """
     (tmp_path / "scene.toml").write_text(scene)
     path = str(tmp_path / "scene.toml")
+    sorted_heights, of = [], Heights.of
+    monkeypatch.setattr(Heights, "of", lambda *args: sorted_heights.append(args) or of(*args))
+    load(path)
+    assert not sorted_heights  # only a check computes how bodies float
     with pytest.raises(SystemExit) as ended:
         main(["check", path])
     assert ended.value.code == 0
     note = "note of block: bodies[0] weighs 2 kg and stands in 4 kg of water: without turning, it "
     assert note in capsys.readouterr().out
+    assert len(sorted_heights) == 1
     larger = [
         "--set", "components.block.bodies.0.scale=1.0",
         "--set", "components.block.bodies.0.agglomerate.sphere_radius=25.0",
