@@ -1,13 +1,15 @@
 """Whether bodies float as they are placed: their mass, and that of the water in which they begin.
 
 The water inside a body is removed at the start, so that it stands in as much as its surface
-displaces below the level. It then rises or sinks until it displaces its own mass; the level of the
-rest of the water follows. How it turns meanwhile is left out.
+displaces below the level. It then rises or sinks until it displaces its own mass or rests on the
+bottom; the level of the rest of the water follows all bodies. How they turn meanwhile, and forces
+other than gravity, are left out.
 """
 
-from collections.abc import Iterable
+import math
+from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
 import numpy as np
 
@@ -25,7 +27,11 @@ MOST = 20  # bodies; for more, no notes
 LONGEST = 20.0  # of a body over the diagonal of the water: a longer one is in a wrong unit
 ROUNDING = 1e-9  # of the edges of the water
 NEARLY = 0.01  # of a body's height
-FAR = 0.25  # of a body's mass: the water that it stands in differs by more than it is likely to
+FAR = 0.25  # of a body's mass: if it displaces more or less than that, it is hardly placed to float
+SAME = 1e-6  # change of what bodies displace, at which their level counts as known
+MOST_TRIED = 100  # levels
+REST = "rests on the bottom"
+REMEDY = "If it is to float at rest, correct its height, mass, scale or orientation."
 
 
 class StillWater(NamedTuple):
@@ -45,10 +51,10 @@ class StillWater(NamedTuple):
         """Of its level [m2]."""
         return float(np.prod(self.size[:2]))
 
-    def is_around(self, triangles: Array) -> bool:
-        """Whether triangles (t, 3, 3) m lie within its bounds along x and y."""
-        corners, rim = triangles[:, :, :2], ROUNDING * self.size[:2]
-        return bool(np.all((corners >= self.low[:2] - rim) & (corners <= self.high[:2] + rim)))
+    def is_around(self, points: Array) -> bool:
+        """Whether points (..., 3) m lie within its bounds along x and y."""
+        places, rim = points[..., :2], ROUNDING * self.size[:2]
+        return bool(np.all((places >= self.low[:2] - rim) & (places <= self.high[:2] + rim)))
 
 
 def still_water(stated: Fields) -> StillWater | None:
@@ -59,18 +65,76 @@ def still_water(stated: Fields) -> StillWater | None:
     return StillWater(low, high, float(density))
 
 
+class FreeBody(NamedTuple):
+    """A body that may float."""
+
+    mass: float  # kg
+    heights: Heights  # of its surface, where it begins
+    lowest: float  # m, its lowest point
+    highest: float  # m
+    begins_in: float  # kg, water that it displaces where it begins
+    most: float  # kg, water that it displaces under water
+    draught: float  # m, its lowest point below the level where it floats; inf if it sinks
+
+    @classmethod
+    def of(cls, mass: float, triangles: Array, water: StillWater) -> Self:
+        """Measure a body of triangles (t, 3, 3) m."""
+        heights, level = Heights.of(triangles), float(water.high[2])
+        lowest, highest = float(heights.lowest.min()), float(heights.highest.max())
+        begins_in = water.density * heights.volume_below(level)
+        most = water.density * heights.volume_below(highest)
+        draught = heights.level_of(mass / water.density) - lowest if mass < most else math.inf
+        return cls(mass, heights, lowest, highest, begins_in, most, draught)
+
+
 def flotation_notes(bodies: Bodies, water: StillWater) -> tuple[str, ...]:
-    """Say of free boxes and meshes in or above the water how far they are from where they float."""
+    """Say of free boxes and meshes in or above the water how far they are from where they float.
+
+    Where bodies of other shapes float too, how far the level follows is not known: nothing is then
+    said of where bodies come to rest.
+    """
     if len(bodies) > MOST:
         return ()
-    notes = []
+    free: dict[int, FreeBody] = {}
+    all_known = True
     for number, body in enumerate(bodies):
-        triangles = surface_triangles(body)
-        if triangles is None or ("z" in body.locked and body.released_at is None):
+        if "z" in body.locked and body.released_at is None:
             continue
-        if water.is_around(triangles):
-            notes.append(f"bodies[{number}] {flotation(mass_of(body), triangles, water)}")
-    return tuple(notes)
+        triangles = surface_triangles(body)
+        if not water.is_around(np.array(body.position) if triangles is None else triangles):
+            continue
+        if triangles is None:
+            all_known = False
+        else:
+            free[number] = FreeBody.of(mass_of(body), triangles, water)
+    change = level_change(tuple(free.values()), water) if all_known else None
+    numbers: dict[str, list[str]] = {}
+    for number, free_body in free.items():
+        numbers.setdefault(flotation(free_body, water, change), []).append(str(number))
+    return tuple(
+        f"{'each of ' if len(alike) > 1 else ''}bodies[{', '.join(alike)}] {text}"
+        for text, alike in numbers.items()
+    )
+
+
+def level_change(bodies: Sequence[FreeBody], water: StillWater) -> float:
+    """How far [m] the level rises until all bodies float or rest on the bottom."""
+    begin_in = sum(body.begins_in for body in bodies)
+    displaced = [min(body.mass, body.most) for body in bodies]  # kg
+    for _ in range(MOST_TRIED):
+        change = (sum(displaced) - begin_in) / water.density / water.area
+        depth = float(water.size[2]) + change
+        before, displaced = displaced, [_displaced(body, depth, water.density) for body in bodies]
+        if np.allclose(displaced, before, rtol=SAME, atol=0.0):
+            break
+    return change
+
+
+def _displaced(body: FreeBody, depth: float, density: float) -> float:
+    """Water [kg] that a body displaces at rest, in water of a depth [m]."""
+    if body.draught <= depth:
+        return body.mass
+    return density * body.heights.volume_below(body.lowest + depth)
 
 
 def mass_of(body: RigidBody) -> float:
@@ -125,31 +189,34 @@ def edges(body: RigidBody) -> Iterable[float] | None:
     return body.size
 
 
-def flotation(mass: float, triangles: Array, water: StillWater) -> str:
-    """Say what a body weighs, what it stands in, and where it floats."""
-    level, heights = float(water.high[2]), Heights.of(triangles)
-    lowest, highest = float(triangles[:, :, 2].min()), float(triangles[:, :, 2].max())
-    stands_in = water.density * heights.volume_below(level)  # kg
-    most = water.density * heights.volume_below(highest)  # kg
-    text = f"weighs {mass:.4g} kg and stands in {stands_in:.4g} kg of water"
-    if lowest >= level:
-        text = f"weighs {mass:.4g} kg and begins {lowest - level:.3g} m above the water"
-    if mass >= most:
-        return f"{text}: it displaces at most {most:.4g} kg and sinks. {_remedy()}"
-    floats_at = heights.level_of(mass / water.density)  # where the level must be
-    rise = level + (mass - stands_in) / water.density / water.area - floats_at  # m, of the body
-    text += f": without turning, it floats {_way(rise, highest - lowest)}"
-    return f"{text}. {_remedy()}" if abs(stands_in - mass) > FAR * mass else text
+def flotation(body: FreeBody, water: StillWater, change: float | None) -> str:
+    """Say what a body weighs, what it stands in, and where it floats.
+
+    Parameters
+    ----------
+    body : FreeBody
+    water : StillWater
+    change : float or None, m
+        How far the level rises; None where that is not known.
+    """
+    mass, level = body.mass, float(water.high[2])
+    text = f"weighs {mass:.4g} kg and stands in {body.begins_in:.4g} kg of water"
+    if body.lowest >= level:
+        text = f"weighs {mass:.4g} kg and begins {body.lowest - level:.3g} m above the water"
+    if mass >= body.most:
+        text += f": it displaces at most {body.most:.4g} kg and sinks"
+    elif change is not None:
+        rise = level + change - body.draught - body.lowest  # m, of the body
+        rests = body.lowest + rise < water.low[2]
+        way = _way(rise, body.highest - body.lowest)
+        text += f": without turning or other forces, it {REST if rests else f'floats {way}'}"
+    return f"{text}. {REMEDY}" if abs(body.begins_in - mass) > FAR * mass else text
 
 
 def _way(rise: float, height: float) -> str:
     if abs(rise) < NEARLY * height:
         return "where it is"
     return f"{abs(rise):.2g} m {'higher' if rise > 0.0 else 'lower'}"
-
-
-def _remedy() -> str:
-    return "Correct its height, mass, scale or orientation if that is not meant."
 
 
 def _size(lengths: Iterable[float]) -> str:

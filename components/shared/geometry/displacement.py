@@ -23,7 +23,8 @@ class Heights(NamedTuple):
         """Sort the heights of triangles (t, 3, 3) m that look outwards."""
         sides = triangles[:, 1:] - triangles[:, :1]
         across = 0.5 * (sides[:, 0, 0] * sides[:, 1, 1] - sides[:, 0, 1] * sides[:, 1, 0])
-        return cls(*np.sort(triangles[:, :, 2], axis=1).T, across)
+        lowest, middle, highest = np.sort(triangles[:, :, 2], axis=1).T
+        return cls(lowest, middle, highest, across)
 
     def volume_below(self, level: float) -> float:
         """Volume [m3] below a level [m].

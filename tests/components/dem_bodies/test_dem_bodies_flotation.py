@@ -17,7 +17,8 @@ WATER = {
     "water_density": np.array([1000.0]),
 }
 CUBE = {"shape": "box", "lowest": [0.9, 0.4, 0.4], "highest": [1.1, 0.6, 0.6], "material": "a"}
-REMEDY = ". Correct its height, mass, scale or orientation if that is not meant."
+ALONE = "without turning or other forces, it"
+REMEDY = ". If it is to float at rest, correct its height, mass, scale or orientation."
 
 
 def notes(water=WATER, **body):
@@ -27,17 +28,17 @@ def notes(water=WATER, **body):
 @pytest.mark.parametrize(
     ("body", "text"),
     [
-        ({"mass": 4.0}, "stands in 4 kg of water: without turning, it floats where it is"),
+        ({"mass": 4.0}, f"stands in 4 kg of water: {ALONE} floats where it is"),
         # 0.02 m deeper, but for the 0.0004 m by which 0.8 kg raise a level of 2 m2.
-        ({"mass": 4.8}, "stands in 4 kg of water: without turning, it floats 0.02 m lower"),
+        ({"mass": 4.8}, f"stands in 4 kg of water: {ALONE} floats 0.02 m lower"),
         (
             {"mass": 2.0},
-            f"stands in 4 kg of water: without turning, it floats 0.049 m higher{REMEDY}",
+            f"stands in 4 kg of water: {ALONE} floats 0.049 m higher{REMEDY}",
         ),
         ({"mass": 8.5}, f"stands in 4 kg of water: it displaces at most 8 kg and sinks{REMEDY}"),
         (
             {"mass": 4.0, "lowest": [0.9, 0.4, 0.6], "highest": [1.1, 0.6, 0.8]},
-            f"begins 0.1 m above the water: without turning, it floats 0.2 m lower{REMEDY}",
+            f"begins 0.1 m above the water: {ALONE} floats 0.2 m lower{REMEDY}",
         ),
     ],
 )  # fmt: skip
@@ -57,6 +58,48 @@ def test_bodies_that_cannot_rise_and_other_waters_get_no_note():
 def test_a_spar_that_sticks_out_of_the_water_may_be_longer_than_it():
     (note,) = notes(mass=2.0, lowest=[0.9, 0.4, 0.0], highest=[1.1, 0.6, 3.5])
     assert note.startswith("bodies[0] weighs 2 kg and stands in 20 kg of water: ")
+
+
+def test_a_body_that_cannot_float_in_shallow_water_rests_on_the_bottom():
+    # Afloat it would draw 0.9 m of the 0.5 m of water.
+    cube = {"lowest": [0.0, 0.0, 0.0], "highest": [1.0, 1.0, 1.0]}
+    wide = WATER | {"water_highest": np.array([[4.0, 4.0, 0.5]])}
+    assert notes(wide, mass=900.0, **cube) == (
+        "bodies[0] weighs 900 kg and stands in 500 kg of water: without turning or other forces, "
+        f"it rests on the bottom{REMEDY}",
+    )
+    # In a tank of 2 m2 the level rises by 0.3 m.
+    (note,) = notes(mass=600.0, lowest=[0.0, 0.0, 0.5], highest=[1.0, 1.0, 1.5])
+    assert note.endswith(f"it floats 0.3 m lower{REMEDY}")
+
+
+def test_the_level_follows_all_bodies():
+    tub = WATER | {"water_highest": np.array([[0.8, 0.5, 0.5]])}
+    low = [{"lowest": [x, 0.1, 0.4], "highest": [x + 0.2, 0.3, 0.6]} for x in (0.0, 0.3, 0.6)]
+    heavy, light = {"mass": 4.8}, {"mass": 3.2}
+    # 0.8 kg more and less than what they stand in: the level stays, and each moves by 0.02 m.
+    pair = params([CUBE | low[0] | heavy, CUBE | low[1] | light])
+    assert meeting_notes(pair, tub) == (
+        "bodies[0] weighs 4.8 kg and stands in 4 kg of water: without turning or other forces, it "
+        "floats 0.02 m lower",
+        "bodies[1] weighs 3.2 kg and stands in 4 kg of water: without turning or other forces, it "
+        "floats 0.02 m higher",
+    )
+    # Each of three raises the level by 0.002 m.
+    three = params([CUBE | body | heavy for body in low])
+    assert meeting_notes(three, tub) == (
+        "each of bodies[0, 1, 2] weighs 4.8 kg and stands in 4 kg of water: without turning or "
+        "other forces, it floats 0.014 m lower",
+    )
+
+
+def test_copies_get_one_sentence_and_balls_beside_a_body_leave_its_rest_open():
+    copies = {"number": [3, 1, 1], "spacing": [0.3, 0.3, 0.3]}
+    (note,) = notes(mass=4.0, copies=copies)
+    assert note.startswith("each of bodies[0, 1, 2] weighs 4 kg and stands in 4 kg of water: ")
+    ball = {"shape": "sphere", "centre": [0.3, 0.5, 0.5], "radius": 0.1, "mass": 2.0}
+    both = params([CUBE | {"mass": 4.8}, ball | {"material": "a"}])
+    assert meeting_notes(both, WATER) == ("bodies[0] weighs 4.8 kg and stands in 4 kg of water",)
 
 
 def test_bodies_beside_the_water_get_no_note():
@@ -117,7 +160,7 @@ def test_check_says_how_a_hull_floats_and_refuses_one_in_millimetres(tmp_path, c
     with pytest.raises(SystemExit) as ended:
         main(["check", path])
     assert ended.value.code == 0
-    note = "note of block: bodies[0] weighs 2 kg and stands in 4 kg of water: without turning, it "
+    note = f"note of block: bodies[0] weighs 2 kg and stands in 4 kg of water: {ALONE} "
     assert note in capsys.readouterr().out
     assert len(sorted_heights) == 1
     larger = [
