@@ -117,28 +117,44 @@ def _crossings(triangles: Array, place: Array) -> tuple[Array, Array]:
 
 
 def wrong_edges(mesh: Any) -> str:
-    """Say which edges have no two triangles, or two that look to different sides."""
+    """Say which edges have no two triangles, or two with inconsistent orientation."""
     edges = np.asarray(mesh.edges, np.int64)
     _, first, number = np.unique(
         np.sort(edges, axis=1), axis=0, return_index=True, return_inverse=True
     )
     number, way = number.reshape(-1), np.sign(edges[:, 1] - edges[:, 0])
-    open_edges = first[np.bincount(number) != 2]
-    wrong = open_edges if len(open_edges) else first[np.bincount(number, way) != 0.0]
-    where = f"on {len(mesh.faces)} triangles"
-    if len(wrong):
-        middle = np.asarray(mesh.vertices)[edges[wrong[0]]].mean(axis=0)
-        place = ", ".join(f"{x:.4g}" for x in middle)
-        where += f", as at ({place}) in the unit of the file"
-    if len(open_edges):
-        return (
-            f"must be a closed surface, each edge of two triangles; found {len(open_edges)} other "
-            f"edges {where}. Close it, as trimesh.repair.fill_holes can."
-        )
-    return (
-        f"must have triangles that all look outwards; found {len(wrong)} edges between two "
-        f"that look to different sides, {where}. Turn some, as trimesh.repair.fix_normals can."
+    triangles = np.bincount(number)  # of each edge
+    kinds = (
+        (
+            triangles == 1,
+            "be a closed surface, each edge of two triangles",
+            "with only one triangle",
+            "Close it, as trimesh.repair.fill_holes can",
+        ),
+        (
+            triangles > 2,
+            "have edges of two triangles each",
+            "with more than two triangles",
+            "Separate the shells that touch there by a gap, or unite them",
+        ),
+        (
+            np.bincount(number, way) != 0.0,
+            "have triangles that all look outwards",
+            "between faces with inconsistent orientation",
+            "Turn some, as trimesh.repair.fix_normals can",
+        ),
     )
+    for is_wrong, rule, which, remedy in kinds:
+        wrong = first[is_wrong]
+        if len(wrong):
+            middle = np.asarray(mesh.vertices)[edges[wrong[0]]].mean(axis=0)
+            place = ", ".join(f"{x:.4g}" for x in middle)
+            count = "1 edge" if len(wrong) == 1 else f"{len(wrong)} edges"
+            return (
+                f"must {rule}; found {count} {which}, among {len(mesh.faces)} triangles, as at "
+                f"({place}) in the unit of the file. {remedy}."
+            )
+    return "must be a closed surface of triangles that all look outwards. Correct it."
 
 
 def voxels(path: Path, width: float) -> Solid:

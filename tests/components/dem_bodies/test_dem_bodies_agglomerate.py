@@ -175,16 +175,16 @@ def test_what_is_wrong_with_a_file_is_told(files):
     wrong_bodies = {
         "bodies.0.file none.stl must lie beside the scene; in its folder": body("none.stl"),
         "must be a closed surface": body(files / "open.stl"),
-        "found 3 other edges on 11 triangles": body(files / "open.stl"),
-        "on 11 triangles, as at (": body(files / "open.stl"),
-        "turned.ply must have triangles that all look outwards; found 3 edges between two that "
-        "look to different sides, on 12 triangles, as at (": body(files / "turned.ply"),
+        "found 3 edges with only one triangle": body(files / "open.stl"),
+        "among 11 triangles, as at (": body(files / "open.stl"),
+        "found 3 edges between faces with inconsistent orientation": body(files / "turned.ply"),
         "text.stl must be a surface of triangles (STL, OBJ, PLY)": body(files / "text.stl"),
         "text.npy must be one array": body(files / "text.npy"),
         "must have three axes of numbers": body(files / "flat.npy"),
         "of which not all are zero": body(files / "none.npy"),
         "must have finite numbers, 0 outside of the solid; found 1 of 27": body(files / "nan.npy"),
-        "found 1 other edges on 24 triangles": body(files / "pair.ply"),
+        "found 1 edge with more than two triangles, among 24": body(files / "pair.ply"),
+        "Separate the shells that touch there": body(files / "pair.ply"),
         "at most half the shortest edge of the box around the shape, 0.075 m": body(
             files / "ball.ply", radius=0.08
         ),

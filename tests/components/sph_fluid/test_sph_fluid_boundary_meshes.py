@@ -233,7 +233,7 @@ def fan(folder):
 
 
 DEFECTS = {
-    "hole": (open_box, {}, "must be a closed surface, .* found 4 other edges on 10 triangles"),
+    "hole": (open_box, {}, "closed surface, .* found 4 edges with only one triangle, among 10"),
     "overlap": (overlapping_boxes, {}, r"enclose each part of its volume once; found .*%"),
     "two sides": (
         mixed_triangles,
