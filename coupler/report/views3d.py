@@ -3,7 +3,8 @@
 PyVista is loaded by the functions that draw: it belongs to the extra views3d.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -73,18 +74,18 @@ def draw_3d(run: Path, out: Path, picture: Picture, view: str = "", title: str =
     rows = -(-len(times) // columns)
     size = [columns * SIZE[0], rows * SIZE[1]]
     scales, bounds = colour_scales(views, picture.ranges), _bounds(views, still)
-    _hide_warnings()
-    plotter = pyvista.Plotter(off_screen=True, shape=(rows, columns), window_size=size)
-    for place, (time, shown) in enumerate(zip(times, views, strict=True)):
-        plotter.subplot(*divmod(place, columns))
-        _fill(plotter, shown, walls(run, time), scales, bounds, views)
-        _look(plotter, bounds, view)
-        name = f"{title}\n" if title and not place else ""
-        plotter.add_text(f"{name}t = {with_unit(time, 's')}", font_size=9, color="black")
-    with reporting_disk(out):
-        Path(out).parent.mkdir(parents=True, exist_ok=True)
-        plotter.screenshot(str(out))
-    plotter.close()
+    with hidden_warnings():
+        plotter = pyvista.Plotter(off_screen=True, shape=(rows, columns), window_size=size)
+        for place, (time, shown) in enumerate(zip(times, views, strict=True)):
+            plotter.subplot(*divmod(place, columns))
+            _fill(plotter, shown, walls(run, time), scales, bounds, views)
+            _look(plotter, bounds, view)
+            name = f"{title}\n" if title and not place else ""
+            plotter.add_text(f"{name}t = {with_unit(time, 's')}", font_size=9, color="black")
+        with reporting_disk(out):
+            Path(out).parent.mkdir(parents=True, exist_ok=True)
+            plotter.screenshot(str(out))
+        plotter.close()
     return out
 
 
@@ -121,23 +122,23 @@ def animate(
     sample = [_read(files, times[k], picture) for k in chosen]
     scales, bounds = colour_scales(sample, picture.ranges), _bounds(sample, still)
     size = [edge - edge % BLOCK for edge in SIZE]
-    _hide_warnings()
-    plotter = pyvista.Plotter(off_screen=True, window_size=size)
-    with reporting_disk(out):
-        Path(out).parent.mkdir(parents=True, exist_ok=True)
-        if out.suffix.lower() == ".gif":
-            plotter.open_gif(str(out), fps=FRAMES_PER_SECOND)
-        else:
-            plotter.open_movie(str(out), framerate=FRAMES_PER_SECOND)
-        for time in times:
-            plotter.clear()
-            shown, around = _read(files, time, picture), walls(run, time)
-            _fill(plotter, shown, around, scales, bounds, sample)
-            _look(plotter, bounds, view)
-            name = f"{title}\n" if title else ""
-            plotter.add_text(f"{name}t = {with_unit(time, 's')}", font_size=9, color="black")
-            plotter.write_frame()
-        plotter.close()
+    with hidden_warnings():
+        plotter = pyvista.Plotter(off_screen=True, window_size=size)
+        with reporting_disk(out):
+            Path(out).parent.mkdir(parents=True, exist_ok=True)
+            if out.suffix.lower() == ".gif":
+                plotter.open_gif(str(out), fps=FRAMES_PER_SECOND)
+            else:
+                plotter.open_movie(str(out), framerate=FRAMES_PER_SECOND)
+            for time in times:
+                plotter.clear()
+                shown, around = _read(files, time, picture), walls(run, time)
+                _fill(plotter, shown, around, scales, bounds, sample)
+                _look(plotter, bounds, view)
+                name = f"{title}\n" if title else ""
+                plotter.add_text(f"{name}t = {with_unit(time, 's')}", font_size=9, color="black")
+                plotter.write_frame()
+            plotter.close()
     return out
 
 
@@ -189,12 +190,26 @@ def _look(plotter: Any, bounds: Bounds, view: str) -> None:
     plotter.show_axes()
 
 
-def _hide_warnings() -> None:
-    """Hide VTK's warning that there is no screen: views are drawn off the screen."""
+@contextmanager
+def hidden_warnings() -> Iterator[None]:
+    """Hide VTK's warning that there is no screen: views are drawn off the screen.
+
+    VTK tells only the largest verbosity of all its outputs. If another one, as a log file, has a
+    larger verbosity than the standard error stream, that of the stream becomes VTK's default.
+    """
     # Start-up: only views in three dimensions need it.
     from vtkmodules.vtkCommonCore import vtkLogger
 
+    before = vtkLogger.GetCurrentVerbosityCutoff()
+    if before <= vtkLogger.VERBOSITY_ERROR:
+        yield
+        return
     vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_ERROR)
+    is_of_stream = vtkLogger.GetCurrentVerbosityCutoff() < before
+    try:
+        yield
+    finally:
+        vtkLogger.SetStderrVerbosity(before if is_of_stream else vtkLogger.VERBOSITY_INFO)
 
 
 def _fill(

@@ -189,8 +189,8 @@ def advice(coupling: Coupling, link: str) -> str:
     other side has. What answers by sound does so the less the shorter the window, but no window
     is short enough for whatever is light: half the step of the side that gives the force was for
     cubes of 50 kg/m³ in water, and not for 20. Windows of that length that are repeated until
-    both sides agree were stable for all of them, at several times the work. So a link that
-    answers by sound is first advised half the step, or half a window that is no longer than that.
+    both sides agree were stable for all of them, at several times the work. So for a link that
+    answers by sound the first advice is half the shorter of step and window.
     """
     inner = coupling.carries(link) or coupling
     key = f"groups.{inner.plan.name}." if inner.plan.name else ""

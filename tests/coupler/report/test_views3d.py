@@ -9,6 +9,7 @@ from quintet.components.shared.geometry.box_faces import box
 from quintet.coupler.cli import main
 from quintet.coupler.files.vtkhdf import VtkHdf
 from quintet.coupler.report import views3d
+from quintet.coupler.report.picture import Picture
 from quintet.coupler.report.view_steps import Quantity, Shown, Still
 from quintet.interfaces.faces import polygons
 
@@ -144,3 +145,16 @@ def test_what_lacks_is_named_with_its_extra(folder, monkeypatch, capsys, library
     assert exit_status(folder, *options) == 2
     message = capsys.readouterr().err
     assert f"needs the library {library}" in message and "quintet[views3d]" in message
+
+
+def test_the_verbosity_of_vtk_is_restored_after_drawing(folder, tmp_path):
+    from vtkmodules.vtkCommonCore import vtkLogger
+
+    before = vtkLogger.GetCurrentVerbosityCutoff()
+    try:
+        for verbosity in (vtkLogger.VERBOSITY_WARNING, vtkLogger.VERBOSITY_OFF):
+            vtkLogger.SetStderrVerbosity(verbosity)
+            views3d.draw_3d(folder, tmp_path / "drawn.png", Picture(times=[0.0]))
+            assert vtkLogger.GetCurrentVerbosityCutoff() == verbosity
+    finally:
+        vtkLogger.SetStderrVerbosity(before)
