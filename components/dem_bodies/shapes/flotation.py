@@ -24,12 +24,12 @@ from quintet.interfaces.errors import SceneError
 from quintet.interfaces.ports import STILL_WATER
 
 MOST = 20  # bodies; for more, no notes
-LONGEST = 20.0  # of a body over the diagonal of the water: a longer one is in a wrong unit
+LONGEST = 20.0  # edge of a body over the diagonal of the water; longer: probably a wrong unit
 ROUNDING = 1e-9  # of the edges of the water
 NEARLY = 0.01  # of a body's height
-FAR = 0.25  # of a body's mass: if it displaces more or less than that, it is hardly placed to float
-SAME = 1e-6  # change of what bodies displace, at which their level counts as known
-MOST_TRIED = 100  # levels
+FAR = 0.25  # of a body's mass: a larger difference from the displaced water gets a remedy
+SAME = 1e-6  # relative change of the displaced water at which the level has converged
+MOST_TRIED = 100  # levels, until then
 REST = "rests on the bottom"
 REMEDY = "If it is to float at rest, correct its height, mass, scale or orientation."
 
