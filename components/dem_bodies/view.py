@@ -11,6 +11,7 @@ from quintet.components.dem_bodies.shapes.rigid_body import RigidBody
 from quintet.components.dem_bodies.shapes.solid import Solid
 from quintet.components.dem_bodies.state import Numbers, State
 from quintet.components.shared.geometry import body_view
+from quintet.components.shared.geometry.shapes import read_solid
 from quintet.interfaces.component import Array, Fields
 from quintet.interfaces.faces import polygons
 
@@ -41,10 +42,7 @@ def _outline(body: RigidBody, solid: Solid) -> body_view.Outline:
 @lru_cache(maxsize=16)
 def mesh(file: str, scale: float) -> body_view.Outline:
     """Vertices about the centre of mass, and triangles, of a body from a file."""
-    # Left out of scenes without meshes.
-    from quintet.components.shared.geometry.mesh_files import read
-
-    shape = read(file, scale)
+    shape = read_solid(file, scale)
     corners, cells = np.unique(shape.triangles.reshape(-1, 3), axis=0, return_inverse=True)
     points = corners - shape.centre
     return body_view.Outline(points, np.zeros(len(points)), cells.reshape(-1, 3))

@@ -24,7 +24,8 @@ from typing import NamedTuple
 import numpy as np
 
 from quintet.components.shared.geometry.lattice import lattice_points, spread_evenly
-from quintet.components.shared.geometry.mesh_files import Solid, inside, nearest, read
+from quintet.components.shared.geometry.mesh_files import Solid, inside, nearest
+from quintet.components.shared.geometry.shapes import read_solid
 from quintet.interfaces.component import Array
 
 MOST = 2000  # spheres of one body
@@ -59,7 +60,7 @@ def agglomerate(file: str, scale: float, dim: int, radius: float) -> Agglomerate
         Places of the lattice along the longest edge.
     radius : float, m
     """
-    shape = read(file, scale)
+    shape = read_solid(file, scale)
     low, high = shape.triangles.min(axis=(0, 1)), shape.triangles.max(axis=(0, 1))
     size = high - low
     require_fit(file, scale, size, dim, radius)

@@ -235,7 +235,7 @@ class Mesh:
     @property
     def solid(self) -> "Solid":
         """The surface about the file's origin, and what it encloses."""
-        return _read(self.file, self.scale)
+        return read_solid(self.file, self.scale)
 
     @property
     def triangles(self) -> Array:
@@ -273,7 +273,8 @@ Shape = Box | Sphere | Cylinder | Disc | Polygon | Mesh
 
 
 @lru_cache(maxsize=16)
-def _read(file: str, scale: float) -> "Solid":
+def read_solid(file: str, scale: float) -> "Solid":
+    """Read a closed surface once, whoever needs it; see `mesh_files.read`."""
     # As above.
     from quintet.components.shared.geometry.mesh_files import read
 

@@ -201,6 +201,15 @@ def test_what_is_wrong_with_a_file_is_told(files):
         assert sentence in " ".join(mistakes([wrong_body])), (sentence, mistakes([wrong_body]))
 
 
+def test_a_file_is_read_once_for_spheres_mass_and_view(files, monkeypatch):
+    read_files, load_mesh = [], trimesh.load_mesh
+    monkeypatch.setattr(
+        trimesh, "load_mesh", lambda *args: read_files.append(args) or load_mesh(*args)
+    )
+    build([body(files / "cube.stl", scale=1e-3)]).view()
+    assert len(read_files) == 1
+
+
 @pytest.mark.parametrize("inwards", [False, True])
 def test_a_surface_that_is_inside_out_is_turned_with_a_note(files, inwards):
     cube = trimesh.creation.box((EDGE,) * 3)
