@@ -24,7 +24,7 @@ from quintet.interfaces.lines.zenoh import Session, ZenohLine
 from quintet.interfaces.serving.process import build
 from quintet.interfaces.serving.serve import Server, answer
 
-FEW, MANY = 1_500, 200_000
+FEW, MANY = 1_500, 250_000
 COUNTS = [FEW, pytest.param(MANY, marks=pytest.mark.full)]
 LONGEST = 5.0  # s for one frame, on a machine under load
 MEMORY = 200e6  # bytes that all of them may need
