@@ -73,11 +73,16 @@ def _meetings(
     components: Mapping[str, ComponentPlan], links: list[Link], begun: set[str]
 ) -> Iterator[tuple[ComponentPlan, ComponentPlan]]:
     """Each component with each partner that has surroundings for it."""
-    for link in links:
-        for name in sorted(link.ends) if begun.isdisjoint(link.ends) else ():
-            for partner in sorted(link.ends - {name}):
-                if components[partner].manifest.surroundings:
-                    yield components[name], components[partner]
+    pairs = {
+        (name, partner): None  # once, also where several links join them
+        for link in links
+        if begun.isdisjoint(link.ends)
+        for name in sorted(link.ends)
+        for partner in sorted(link.ends - {name})
+    }
+    for name, partner in pairs:
+        if components[partner].manifest.surroundings:
+            yield components[name], components[partner]
 
 
 def _described(

@@ -8,6 +8,7 @@ from dem_scenes import params
 from quintet.components.dem_bodies.plan import meeting_notes, meets
 from quintet.components.shared.geometry.displacement import Heights
 from quintet.coupler.cli import main
+from quintet.coupler.scene.joins import partner_notes
 from quintet.coupler.scene.read import load
 from quintet.interfaces.errors import SceneError
 
@@ -173,3 +174,11 @@ def test_check_says_how_a_hull_floats_and_refuses_one_in_millimetres(tmp_path, c
     assert "found 200 x 200 x 200 m of block.stl at scale 1. Correct scale, " in (
         capsys.readouterr().err
     )
+
+
+def test_a_body_that_two_links_join_to_its_water_gets_one_note():
+    scene = load("floating_hull", preset="quick")
+    once, twice = (
+        partner_notes(scene.components, links) for links in (scene.links, 2 * scene.links)
+    )
+    assert once == twice and len(once["hull"]) == 1
