@@ -85,8 +85,8 @@ def test_the_steps_of_the_manual_lead_to_a_hull_at_its_draught(
         "note of hull: hull_m.stl is 0.48 x 0.24 x 0.16 m, encloses 0.01225 m3 and has 6.74 kg"
     ) in check
     assert (
-        "note of hull: bodies[0] weighs 6.74 kg and stands in 6.738 kg of water: without turning, "
-        "it floats where it is\n"
+        "note of hull: bodies[0] weighs 6.74 kg and stands in 6.738 kg of water: without turning "
+        "or other forces, it floats where it is\n"
     ) in check
 
 
