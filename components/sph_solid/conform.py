@@ -1,5 +1,6 @@
 """What the laws of the contract are tried on: small blocks, free, striking and glued."""
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -34,6 +35,10 @@ ON_FACE = {
     "contact_faces.velocity": np.zeros((4, 3)),
     "contact_activity.active": np.ones(1),
 }
+ON_DEVICES = {
+    "striking block", "quarter, corrected", "quarter, neighbours of the start",
+    "artificial stress", "rings", "block on a face", "glued block",
+}  # fmt: skip
 MOVED_FACE = {"contact_faces.position": 1e-5, "contact_faces.velocity": 1.0}
 
 
@@ -48,7 +53,7 @@ def cases() -> tuple[ConformCase, ...]:
     }
     layers = {"lowest": [0.0, 0.0, 0.0], "highest": [0.02, 0.04, 0.04]}
     rest = {"glued.velocity": np.zeros((GLUED, 3)), "glue_activity.active": np.ones(GLUED)}
-    return (
+    on_processor = (
         ConformCase("block", BLOCK, dt=STEP),
         ConformCase(
             "striking block",
@@ -91,75 +96,19 @@ def cases() -> tuple[ConformCase, ...]:
             smooth=False,  # a velocity that jumps is a force without end
             activity={"glue_activity.active": ("glued", "glued_load")},
         ),
-        *on_devices(moving, layers, rest),
     )
+    return on_processor + on_devices(on_processor)
 
 
-def on_devices(
-    moving: dict[str, Any], layers: dict[str, Any], rest: dict[str, Any]
-) -> tuple[ConformCase, ...]:
-    """Blocks on a device, where there is one: at rest, rings, struck, glued, on a face."""
+def on_devices(on_processor: tuple[ConformCase, ...]) -> tuple[ConformCase, ...]:
+    """Some of the same blocks on a device, where there is one."""
     # Loads pyopencl where it is installed; these cases alone ask for it.
     from quintet.components.shared.opencl.devices import is_any_there
 
     if not is_any_there():
         return ()
-    (still,) = BLOCK["bodies"]
-    planes = [{"axis": "y"}, {"axis": "z"}]
-    return (
-        ConformCase(
-            "quarter, corrected, OpenCL",
-            {**BLOCK, "symmetry": planes, "kernel_correction": True},
-            dt=STEP,
-            device="opencl",
-        ),
-        ConformCase(
-            "quarter, neighbours of the start, OpenCL",
-            {**BLOCK, "symmetry": planes, "total_lagrangian": True},
-            dt=STEP,
-            still=False,  # F at rest is one to rounding, which is 1e-6 Pa of steel
-            device="opencl",
-        ),
-        ConformCase(
-            "artificial stress, OpenCL",
-            {**BLOCK, "artificial_stress": 0.3},
-            dt=STEP,
-            device="opencl",
-        ),
-        ConformCase(
-            "rings, OpenCL",
-            {**BLOCK, "dimensions": 2, "axisymmetric": True},
-            dt=STEP,
-            device="opencl",
-        ),
-        ConformCase(
-            "striking block, OpenCL",
-            {**BLOCK, "bodies": [still, moving]},
-            dt=STEP,
-            still=False,
-            smooth=False,  # it begins to yield
-            device="opencl",
-        ),
-        ConformCase(
-            "block on a face, OpenCL",
-            {**BLOCK, "contact_with_faces": True},
-            static=FACE,
-            rest=ON_FACE,
-            scale=MOVED_FACE,
-            dt=STEP,
-            smooth=False,  # it touches, or it does not
-            forces=("contact_load.force",),
-            activity={"contact_activity.active": ()},
-            device="opencl",
-        ),
-        ConformCase(
-            "glued block, OpenCL",
-            {**BLOCK, "glued": [layers]},
-            rest=rest,
-            scale={"glued.velocity": 10.0},
-            dt=STEP,
-            smooth=False,  # a velocity that jumps is a force without end
-            activity={"glue_activity.active": ("glued", "glued_load")},
-            device="opencl",
-        ),
+    return tuple(
+        replace(case, name=f"{case.name}, OpenCL", device="opencl")
+        for case in on_processor
+        if case.name in ON_DEVICES
     )

@@ -29,7 +29,7 @@ class DeviceRows:
     owned : slice
         The host's rows of this rank.
     copied : (k,) int array
-        The host's rows of other ranks of which there are copies.
+        Rows of other ranks, by the host's numbers, that this rank has copies of.
     """
 
     def __init__(

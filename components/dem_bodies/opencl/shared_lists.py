@@ -17,7 +17,7 @@ class SharedDeviceLists(DeviceLists, SharedLists):
 
     @property
     def copied(self) -> Whole:
-        """Rows of other ranks of which the device needs copies, rising."""
+        """Rows of other ranks that the device needs copies of, in ascending order."""
         return np.concatenate(self.needed)
 
     def count_contacts(self, listed: bool = False) -> int:

@@ -11,7 +11,7 @@ from quintet.components.shared.domain.exchange import send_rows
 
 
 class Loads(NamedTuple):
-    """Slots of loads: own ones first, then those that arrive from other ranks."""
+    """Where loads are stored: first those of this rank's pairs, then those received."""
 
     sent: list[Whole]  # for each rank, the slots of the loads that it gets
     arrived: list[Whole]  # for each rank, the slots into which its loads go
@@ -32,7 +32,7 @@ def link_loads(shares: Shares, rows: slice, target: Whole, slot: Whole, room: in
         Row on which each load of own pairs acts, own or of a later rank, and its slot; in the
         order of the pairs.
     room : int
-        Slots of own loads; those that arrive have the next ones.
+        How many slots this rank's own loads have; received loads follow them.
     """
     owner = shares.owners(target)
     sent = [slot[owner == rank] for rank in range(shares.size)]

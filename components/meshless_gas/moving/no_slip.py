@@ -22,7 +22,7 @@ class NoSlipBodies(BodyFriction):
         insulating = np.array([body.is_adiabatic for body in params.bodies])[layout.body]
         self.held = np.flatnonzero((warmth > 0.0) | insulating)
         self.law, self.layout = law, layout
-        # Of those that are held: negative where they are adiabatic.
+        # Temperatures of no-slip walls; negative where a wall is adiabatic.
         self.temperature = np.where(insulating, -1.0, warmth)[self.held]  # K
         self.insulating = np.flatnonzero(self.temperature < 0.0)
         self.rows = layout.walls[self.held].astype(np.int32)

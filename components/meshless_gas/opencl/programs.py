@@ -17,7 +17,7 @@ SOURCES = ("rows", "lanes", "gradients", "fluxes", "boundaries", "stages")
 
 
 class Physics(NamedTuple):
-    """Physics that a scene may leave out; what is left out is not printed."""
+    """Optional physics of a scene; the laws of physics that it lacks are not printed."""
 
     planar: bool  # whether y is left out
     sloped: bool  # whether the scheme is of second order

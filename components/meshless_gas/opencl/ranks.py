@@ -59,7 +59,7 @@ class DeviceRanks(DevicePart):
         )
 
     def _exchange(self, rows: "ExchangedRows", exchange: Callable[[], None]) -> None:
-        """Copy the rows that are sent to the host, and those that are received to the device."""
+        """Copy rows to send from the device, exchange them, and copy received rows to it."""
         primitive, state = self.gas.fluxes.primitive, self.state
         primitive[rows.exchanged.sent] = rows.get(state.primitive)
         exchange()

@@ -10,14 +10,14 @@ from quintet.components.shared.opencl.arrays import DeviceArray
 
 
 class DeviceSliding:
-    """Those of the walls of one gas that have accommodation coefficients.
+    """The walls of one gas that have accommodation coefficients.
 
     Parameters
     ----------
     rarefied : RarefiedWalls
         Walls of the host's gas.
     walls : int
-        How many walls there are, also of those that hold the gas.
+        Number of all walls, with and without slip.
     state : DeviceState
     """
 

@@ -3,11 +3,11 @@
     u - u_w = (2 - σ)/σ λ (∂u_t/∂n - κ (u - u_w)) + 3/4 μ/(ρT) ∇_t T
     T - T_w = (2 - α)/α 2γ/(γ + 1)/Pr λ ∂T/∂n
 
-κ is the curvature of the wall: the shear of a gas that turns with it as a whole is none.
-Slopes are those of parabolas through the wall and two nodes above it, with what is sought as one
-of their values: no wall is too rarefied for the step. `shares` (3,) 1/m are those of
-`slope_shares`; `state`, `first` and `second` (5,) kg/m3, m/s, Pa are on the wall and at the two
-nodes above it.
+κ is the curvature of the wall; with its term a gas in rigid rotation with the wall has no shear.
+Slopes are those of parabolas through the wall and two nodes above it. The unknown at the wall is
+one of the three values, so the formulas are implicit and stable for any mean free path.
+`shares` (3,) 1/m are those of `slope_shares`; `state`, `first` and `second` (5,) kg/m3, m/s, Pa
+are on the wall and at the two nodes above it.
 """
 
 import math
