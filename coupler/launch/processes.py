@@ -67,14 +67,17 @@ def end_marked(name: str, value: str) -> None:
     """Kill all processes of this host with a variable in their environment, and see them gone.
 
     A solver's own child processes inherit it, whatever sessions and parents they have by now.
+    A process that just starts a program shows no environment for an instant: none must be there
+    twice in a row.
     """
     limit = time.monotonic() + KILLED
-    while left := [pid for pid in marked(name, value) if running(pid)]:
+    absent = 0  # times in a row
+    while absent < 2 and time.monotonic() < limit:
+        left = [pid for pid in marked(name, value) if running(pid)]
         for pid in left:
             with contextlib.suppress(ProcessLookupError):
                 os.kill(pid, signal.SIGKILL)
-        if time.monotonic() > limit:
-            return
+        absent = 0 if left else absent + 1
         time.sleep(0.01)
 
 

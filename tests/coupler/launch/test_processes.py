@@ -254,8 +254,9 @@ def test_a_process_whose_name_ends_within_a_letter_runs(tmp_path):
     program.chmod(0o700)
     mark = {"QUINTET_TEST": str(tmp_path)}
     with subprocess.Popen([program], env={**os.environ, **mark}) as process:
-        while not Path(f"/proc/{process.pid}/stat").read_bytes().count(b"aaa"):
+        while process.pid not in marked("QUINTET_TEST", str(tmp_path)):
             time.sleep(0.01)
+        assert b"aaa" in Path(f"/proc/{process.pid}/stat").read_bytes()
         assert running(process.pid)
         end_marked(*mark.popitem())
         assert process.wait() == -signal.SIGKILL and not running(process.pid)
