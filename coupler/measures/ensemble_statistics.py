@@ -57,11 +57,11 @@ def statistics(values: Sequence[float]) -> Statistics | None:
     if len(values) < 2:
         return Statistics(1, mean, None, None, quantiles)
     deviation = float(np.std(values, ddof=1))
-    half = _student(len(values) - 1) * deviation / float(np.sqrt(len(values)))
+    half = student(len(values) - 1) * deviation / float(np.sqrt(len(values)))
     return Statistics(len(values), mean, deviation, (mean - half, mean + half), quantiles)
 
 
-def _student(freedom: int) -> float:
+def student(freedom: int) -> float:
     """Two-sided quantile of Student's t distribution at the confidence."""
     # Scenes are read, and run, without it.
     from scipy.special import stdtrit

@@ -41,6 +41,28 @@ def table(rows: Sequence[Row]) -> Table:
     return screen_table
 
 
+def origins_table(rows: Sequence[Row]) -> Table:
+    """What the spread of each quantity comes from: a row for each input, and one for the rest."""
+    screen_table = Table(box=None, pad_edge=False)
+    heads = ("spread of", "from", "slope", "95 %", "of variance", "reference met at", "within")
+    for head in heads:
+        screen_table.add_column(head, justify="left" if head in heads[:2] else "right")
+    for row in rows:
+        explained = row.get("origins")
+        if explained is None:
+            continue
+        for number, effect in enumerate(explained["effects"]):
+            screen_table.add_row(
+                f"{row['name']} [{row['unit']}]" if number == 0 else "",
+                effect["name"] + (f" [{effect['unit']}]" if effect["unit"] != "1" else ""),
+                _number(effect["slope"]), _span(effect["interval"]), f"{effect['share']:.0%}",
+                _number(effect["met_at"]), _span(effect["met_between"]),
+            )  # fmt: skip
+        rest = f"{explained['remainder_share']:.0%}"
+        screen_table.add_row("", "what they do not explain", "", "", rest, "", "")
+    return screen_table
+
+
 def _number(value: float | None) -> str:
     return "-" if value is None else f"{value:.4g}"
 

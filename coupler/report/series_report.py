@@ -116,6 +116,9 @@ def _ensemble(content: Content) -> Iterator[Part]:
     uncertain = [f"{name}: {drawn}" for name, drawn in _perturbations(content)]
     table = _plain(ensemble_report.table(content["expectations"]))
     yield Part("Distribution of the results", table=table)
+    if any(row.get("origins") for row in content["expectations"]):
+        table = _plain(ensemble_report.origins_table(content["expectations"]))
+        yield Part("Where the spread comes from", table=table)
     yield Part("What is uncertain", [f"Random numbers begin at {content['seed']}.", *uncertain])
 
 

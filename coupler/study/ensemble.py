@@ -17,17 +17,19 @@ from quintet.coupler.files.disk import write_whole
 from quintet.coupler.files.json_file import JsonFile
 from quintet.coupler.files.recording import Recording
 from quintet.coupler.files.run_files import REPORT
+from quintet.coupler.measures.ensemble_inputs import origins
 from quintet.coupler.measures.ensemble_statistics import QUANTILES, Band, band, statistics
 from quintet.coupler.measures.evaluation import curve, reference_curve, reference_value
-from quintet.coupler.measures.expectation import Expectation
+from quintet.coupler.measures.expectation import DISTANCES, Expectation
 from quintet.coupler.measures.time_series import Curve, points_between
-from quintet.coupler.report.ensemble_report import draw, table, write_statistics
+from quintet.coupler.report.ensemble_report import draw, origins_table, table, write_statistics
 from quintet.coupler.report.show import console
 from quintet.coupler.report.sweep_report import write_csv
 from quintet.coupler.run import results
 from quintet.coupler.run.folder import share
 from quintet.coupler.scene.ensemble_table import Perturbation, draw_settings
 from quintet.coupler.scene.overrides import command_line
+from quintet.coupler.scene.quantity_texts import units_of_keys
 from quintet.coupler.scene.read import load_variants
 from quintet.coupler.scene.scene import Scene
 from quintet.coupler.scene.sweep_axes import Axis
@@ -61,7 +63,7 @@ class Ensemble(RunSeries):
         One for each expectation: `name`, `unit`, `count`, `mean`, `deviation`, `interval`,
         `quantiles`, `reference`, `reference_deviation`, `within`, and `inside`: the share of the
         reference between the quantiles of 5 % and 95 %, of a number 0 or 1, of a curve that of its
-        points.
+        points; and `origins`: what its spread comes from, None of too few runs.
     """
 
     scene: str
@@ -96,6 +98,8 @@ def run_ensemble(options: argparse.Namespace) -> int:
     wanted.write(sampled.summary())
     screen = console()
     screen.print(table(sampled.expectations))
+    if any(row["origins"] for row in sampled.expectations):
+        screen.print(origins_table(sampled.expectations))
     for row in sampled.failed:
         screen.print(f"{row['status']}: run {row['run']}: {row['cause']}", markup=False)
     done = sum(row["status"] == "done" for row in sampled.rows)
@@ -165,8 +169,11 @@ def _conclude(sampled: Ensemble, scene: Scene) -> None:
     folders = [sampled.folder / row["run"] for row in done]
     curves = _curves([e for e in scene.expect if e.csv is not None], folders)
     bands = {name: band(computed) for name, computed in curves.items()}
+    keys = {name: table["keys"][0] for name, table in sampled.perturbations.items()}
+    units = units_of_keys(scene, keys.values())
     sampled.expectations = [
         _judged(expectation, done, bands.get(expectation.name), scene.folder)
+        | {"origins": _origins(expectation, done, keys, units, scene.folder)}
         for expectation in scene.expect
     ]
     write_statistics(sampled.expectations, sampled.folder / TABLE)
@@ -226,6 +233,27 @@ def _judged(
         "inside": inside,
         "source": expectation.source,
     }
+
+
+def _origins(
+    expectation: Expectation,
+    done: Sequence[Row],
+    keys: Mapping[str, str],
+    units: Mapping[str, str],
+    folder: Path,
+) -> Row | None:
+    """What the spread of one expectation comes from; None of too few runs."""
+    known = [row for row in done if row["values"].get(expectation.name) is not None]
+    inputs = {name: [row["settings"][key] for row in known] for name, key in keys.items()}
+    is_distance = expectation.measure in DISTANCES
+    reference = None if is_distance else reference_value(expectation, folder)
+    explained = origins(inputs, [row["values"][expectation.name] for row in known], reference)
+    if explained is None:
+        return None
+    row = asdict(explained)
+    for effect in row["effects"]:
+        effect["unit"] = units.get(keys[effect["name"]], "1")
+    return row
 
 
 def _distributions(perturbations: Sequence[Perturbation]) -> dict[str, Row]:

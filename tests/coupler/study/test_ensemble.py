@@ -78,6 +78,13 @@ def test_an_ensemble_reports_the_distribution_and_runs_nothing_twice(tmp_path, c
     _, second_report = command_json("ensemble", path, "--runs", 6, "--seed", 7)
     assert [row["kept"] for row in second_report["rows"]] == 4 * [True] + 2 * [False]
     assert set(starts(out).values()) == {1} and len(starts(out)) == 6
+    end, curve = second_report["expectations"]
+    stiffness, mass = end["origins"]["effects"]
+    assert (stiffness["name"], mass["name"]) == ("stiffness", "mass")
+    low, high = stiffness["interval"]  # of d cos(√(k/m) 1 s)/dk
+    assert low < -math.sin(10.0) / 20.0 < high and high - low < 0.02
+    assert curve["origins"]["effects"][0]["met_at"] is None  # a distance has no reference
+    assert "what they do not explain" in capsys.readouterr().out
 
 
 @pytest.mark.slow
