@@ -22,6 +22,7 @@ BESIDE = (
 STUDY_ALL = "the quick refinements of all scenes that come with quintet; goes on where it was ended"
 MINUTES = "with --all: start no run that would end later (default: 60)"
 STABILITY_ALL = "the limits of all scenes that come with quintet; goes on where it was ended"
+SCENES_AT_ONCE = "with --all: scenes at once (default: 2)"
 LIMITS_README = "with --all: put the table between <!-- stability --> and its end mark in this file"
 README = "with --all: put the table between <!-- study --> and <!-- studied --> of this file"
 ALL = "scan all scenes that come with quintet and have scans"
@@ -67,6 +68,7 @@ def add_commands(command: Command) -> None:
     add_scene(stability, nargs="?")
     add_report(stability, "runs/SCENE-stability")
     stability.add_argument("--all", action="store_true", help=STABILITY_ALL)
+    stability.add_argument("--jobs", type=int, default=2, metavar="N", help=SCENES_AT_ONCE)
     stability.add_argument("--readme", type=Path, metavar="FILE", help=LIMITS_README)
     scan = command("scan", series, "check whether wrong results of absurd settings are reported")
     add_scene(scan, nargs="?")

@@ -7,6 +7,7 @@ Where only expectations fail a scene is degraded, not unstable; that limit is lo
 import argparse
 import json
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -43,16 +44,18 @@ class Searches:
 
     options: argparse.Namespace
     stop: StopRequest
+    named: bool = False  # whether lines of progress begin with the scene: several are searched
 
     def find(self, scene: str, limits: list[Limit], folder: Path) -> list[Row]:
         """Find the limits of a scene in a folder; the last may be incomplete after an interrupt."""
         summaries: list[Row] = []
-        for limit in limits:
+        for limit in limits if not self.stop() else ():
             for number, other in enumerate(limit.others()):
                 place = folder / limit.folder
                 place = place if other is None else place / folder_name(f"{other:.6g}")
                 keep = not self.options.force
-                search = Search(limit, other, self._child(scene, limit), place, keep)
+                prefix = f"{folder.name}: " if self.named else ""
+                search = Search(limit, other, self._child(scene, limit), place, keep, prefix)
                 is_complete = find_limit(search)
                 summaries.append(summary(search, limit.predicted(number), is_complete))
                 if not is_complete:
@@ -96,8 +99,13 @@ def run_stability(options: argparse.Namespace) -> int:
 
 
 def _run_all(options: argparse.Namespace) -> int:
-    """Find the limits of all scenes that come with quintet; what was found before is kept."""
+    """Find the limits of all scenes that come with quintet; what was found before is kept.
+
+    Limits of one scene are found one after the other, several scenes at once.
+    """
     refuse_with_all("stability", options)
+    if options.jobs < 1:
+        raise SceneError(f"stability: --jobs must be 1 or more; found {options.jobs}. Correct it.")
     wanted = JsonFile(options.json, KEYS, kind=list)
     if options.readme:
         marked_place.LIMITS.check(options.readme)
@@ -107,20 +115,29 @@ def _run_all(options: argparse.Namespace) -> int:
     scenes = {name: load_variants(name) for name in _cheapest_first()}
     content = {name: content[name] for name in scenes if name in content}
     folder, stop = share("stability", "all", (NAME,), options.out), StopRequest()
-    with stop.listening():
-        for name, (scene, variants) in scenes.items():
+    with stop.listening(), ThreadPoolExecutor(options.jobs) as threads:
+        for name in scenes:
             (folder / name).mkdir(exist_ok=True)
-            summaries = Searches(options, stop).find(name, variants.stability, folder / name)
-            if stop():
-                break
-            command = command_line("stability", name)
-            content[name] = _write(name, scene, summaries, folder / name, _asked(options), command)
-            ordered = [content[scene] for scene in sorted(content)]
-            wanted.write(ordered)
-            write_whole(folder / NAME, json.dumps(ordered, indent=2))
-            if options.readme:
-                marked_place.LIMITS.put(options.readme, "\n".join(markdown(ordered)))
-            _show(content[name], folder / name)
+        searches = Searches(options, stop, named=True)
+        futures = {
+            threads.submit(searches.find, name, variants.stability, folder / name): name
+            for name, (_, variants) in scenes.items()
+        }
+        try:
+            for future in as_completed(futures):
+                name, summaries = futures[future], future.result()
+                if stop():
+                    continue  # the last of them may be incomplete
+                row = (name, scenes[name][0], summaries, folder / name, _asked(options))
+                content[name] = _write(*row, command_line("stability", name))
+                ordered = [content[scene] for scene in sorted(content)]
+                wanted.write(ordered)
+                write_whole(folder / NAME, json.dumps(ordered, indent=2))
+                if options.readme:
+                    marked_place.LIMITS.put(options.readme, "\n".join(markdown(ordered)))
+                _show(content[name], folder / name)
+        finally:
+            threads.shutdown(cancel_futures=True)
     if stop():
         return results.INTERRUPTED
     return _status([limit for scene in content.values() for limit in scene["limits"]])

@@ -41,6 +41,7 @@ class Search:
     child: ChildRun
     folder: Path
     keep: bool  # whether verdicts in the folder, of the same runs, count
+    prefix: str = ""  # of the lines that tell the verdicts
     verdicts: dict[float, Verdict] = field(default_factory=dict)
     time_limit: float = FOREVER  # s, of a run
     seconds: float = 0.0  # of all runs
@@ -64,7 +65,8 @@ class Search:
             self.seconds += former["seconds"]
             verdict = self.verdicts[value] = Verdict(**former["verdict"])
             reason = f" ({verdict.broke}: {verdict.how})" if verdict.broke else ""
-            print(f"{self.limit.name} = {value:.6g}: {verdict.state}{reason}", flush=True)
+            name = f"{self.prefix}{self.limit.name}"
+            print(f"{name} = {value:.6g}: {verdict.state}{reason}", flush=True)
         return self.verdicts[value]
 
     def _run(self, value: float) -> Row:

@@ -4,6 +4,7 @@ import csv
 import json
 from functools import partialmethod
 from io import StringIO
+from threading import Barrier
 from types import SimpleNamespace
 
 import pytest
@@ -153,9 +154,9 @@ def test_limits_of_all_scenes_make_a_table(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(stability, "load_variants", lambda name: load_variants(str(scenes[name])))
     readme, json_path = tmp_path / "README.md", tmp_path / "kept.json"
     readme.write_text("before\n<!-- stability -->\nold\n<!-- end of stability -->\nafter\n")
-    monkeypatch.setattr(
-        stability.Searches, "find", partialmethod(by_name, stability.Searches.find, scenes)
-    )
+    at_once = Barrier(2, timeout=30.0)
+    find = partialmethod(by_name, stability.Searches.find, scenes, at_once)
+    monkeypatch.setattr(stability.Searches, "find", find)
     arguments = ("--all", "--json", json_path, "--readme", readme, "--out", tmp_path / "out")
     assert command("stability", *arguments) == 0
     content = json.loads(json_path.read_text())
@@ -164,6 +165,9 @@ def test_limits_of_all_scenes_make_a_table(tmp_path, monkeypatch, capsys):
     assert lines[0] == "before" and lines[-1] == "after" and "old" not in lines
     assert lines[2:-2] == list(markdown(content))
     assert command("stability", *arguments) == 0 and json.loads(json_path.read_text()) == content
+    assert "soft: components.spring.step = 0.15: stable" in capsys.readouterr().out
+    assert command("stability", "--all", "--jobs", 0) == 2
+    assert "stability: --jobs must be 1 or more; found 0." in capsys.readouterr().err
     assert command("stability", "--all", "--set", "end=1.0") == 2
     assert "stability --all takes no --set" in capsys.readouterr().err
     assert command("stability") == 2 and "a scene or --all" in capsys.readouterr().err
@@ -173,8 +177,9 @@ def test_limits_of_all_scenes_make_a_table(tmp_path, monkeypatch, capsys):
     assert "what this command left there before" in capsys.readouterr().err
 
 
-def by_name(searches, find, scenes, name, *arguments):
-    """Find limits of a scene of our own, that has no file in the library."""
+def by_name(searches, find, scenes, at_once, name, *arguments):
+    """Find limits of a scene of our own, that has no file in the library, two at once."""
+    at_once.wait()
     return find(searches, str(scenes[name]), *arguments)
 
 
