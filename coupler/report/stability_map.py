@@ -13,6 +13,10 @@ LOOKS = {
     "degraded": {"marker": "^", "color": "tab:orange"},
     "unstable": {"marker": "x", "color": "tab:red"},
 }
+LINES = {  # with a bar at each limit, which shows it also where there is but one
+    "found": {"linestyle": "-", "color": "0.75", "linewidth": 4.0},
+    "predicted": {"linestyle": "--", "color": "tab:blue", "linewidth": 1.2},
+}
 WIDE = 20.0  # ratio of the ends of an axis from which it is logarithmic
 Row = dict[str, Any]
 
@@ -31,8 +35,11 @@ def draw_maps(
     figure, panels = curve_panels(len(names), f"{scene}: limits of stability")
     for panel, name in zip(panels, names, strict=True):
         _draw(panel, [limit for limit in limits if limit["name"] == name], units)
-    handles, labels = panels[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncols=5, fontsize=8)
+    legends = [zip(*panel.get_legend_handles_labels(), strict=True) for panel in panels]
+    looks = {label: handle for legend in legends for handle, label in legend}
+    shown = [label for label in (*LOOKS, *LINES) if label in looks]
+    handles = [looks[label] for label in shown]
+    figure.legend(handles, shown, loc="outside lower center", ncols=5, fontsize=8)
     return save(figure, out)
 
 
@@ -50,10 +57,12 @@ def _draw(panel: Any, limits: Sequence[Row], units: Mapping[str, str]) -> None:
     for state, pairs in points.items():
         if pairs:
             panel.scatter(*zip(*pairs, strict=True), s=22, label=state, zorder=3, **LOOKS[state])
-    for key, style in (("found", "-"), ("predicted", "--")):
+    for key, line in LINES.items():
         known = [(_other(limit), limit[key]) for limit in limits if limit[key] is not None]
         if known:
-            panel.plot(*zip(*known, strict=True), style, color="0.3", linewidth=1.0, label=key)
+            width = line["linewidth"]
+            bar = {"marker": "_", "markersize": 18, "markeredgewidth": width}
+            panel.plot(*zip(*known, strict=True), label=key, **line, **bar)
     parameter = limits[0]["parameter"]
     path = parameter if isinstance(parameter, str) else ", ".join(parameter)
     labels = [with_unit(name, units) for name in (next(iter(limits[0]["against"])), path)]

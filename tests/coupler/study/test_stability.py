@@ -11,6 +11,7 @@ import pytest
 from rich.console import Console
 from spring_scene import command, command_json, write
 
+from quintet.coupler.report import stability_map
 from quintet.coupler.report.stability_map import draw_maps
 from quintet.coupler.report.stability_tables import markdown, print_limits
 from quintet.coupler.scene.read import load_variants
@@ -127,6 +128,18 @@ def test_a_run_that_was_killed_from_outside_is_no_verdict(tmp_path):
     assert (
         draw_maps("spring", [report | {"against": {"mass": 1.0}}], {}, tmp_path / "map.png") is None
     )
+
+
+def test_the_legend_of_a_map_has_what_any_panel_shows(tmp_path, monkeypatch):
+    figures = []
+    monkeypatch.setattr(stability_map, "save", lambda figure, out: figures.append(figure))
+    runs = [{"value": 1.0, "state": "stable"}, {"value": 2.0, "state": "unstable"}]
+    known = {"parameter": "step", "against": {"mass": 1.0}, "found": None, "predicted": None}
+    first = known | {"name": "first", "runs": runs[:1]}
+    second = known | {"name": "second", "runs": runs, "found": 1.5, "predicted": 1.4}
+    draw_maps("spring", [first, second], {}, tmp_path / "map.png")
+    words = [word.get_text() for word in figures[0].legends[0].get_texts()]
+    assert words == ["stable", "unstable", "found", "predicted"]
 
 
 def test_a_run_that_stalls_and_is_killed_is_unstable(tmp_path):
