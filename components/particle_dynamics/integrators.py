@@ -8,7 +8,7 @@ YOSHIDA = 1.0 / (2.0 - 2.0 ** (1.0 / 3.0))
 # Shares of a step; Yoshida, Phys. Lett. A 150 (1990) 262.
 STAGES = {"velocity_verlet": (1.0,), "yoshida": (YOSHIDA, 1.0 - 2.0 * YOSHIDA, YOSHIDA)}
 # Greatest stable step times the highest frequency; of Yoshida's where an oscillator's step matrix
-# has a trace of -2.
+# has a trace of 2 again.
 LIMIT = {"velocity_verlet": 2.0, "yoshida": 1.5734}
 # Greatest step over the time 1/rate in which damping slows pairs down. Its velocity is predicted by
 # the last force, which is stable up to 1 (Adams and Bashforth's scheme); half, for what vibrates.
