@@ -88,8 +88,11 @@ def slopes(gas: MeshlessGas, row: int, near: Array) -> float:
     return float(np.mean(shares))
 
 
-def gas_of(path: Path, name: str = "") -> tuple[MeshlessGas, dict[str, Any]]:
-    """Make the gas of a scene file as its limit of that name has it; return it, and the limit."""
+def gas_of(path: Path, name: str = "", number: int = 0) -> tuple[MeshlessGas, dict[str, Any]]:
+    """Make the gas of a scene file as its limit of that name has it; return it, and the limit.
+
+    `number` counts the values of a second parameter.
+    """
     scene = tomllib.loads(path.read_text())
     limits = [limit for limit in scene.get("stability", []) if name in ("", limit.get("name"))]
     if not limits:
@@ -98,7 +101,7 @@ def gas_of(path: Path, name: str = "") -> tuple[MeshlessGas, dict[str, Any]]:
     for place, value in limit.get("settings", {}).items():
         put(scene, place.split("."), value)
     if "against" in limit:
-        put(scene, limit["against"]["parameter"].split("."), limit["against"]["values"][0])
+        put(scene, limit["against"]["parameter"].split("."), limit["against"]["values"][number])
     (table,) = (
         component
         for component in scene["components"].values()

@@ -61,12 +61,9 @@ def test_slopes_raise_the_limit_on_a_block_of_neighbours() -> None:
     ("scene", "name"),
     [
         ("vortex", "Courant number"),
-        ("wedge", "Courant number"),
         ("couette", "Courant number"),
         ("flat_plate", "Courant number"),
-        ("blunt_sphere", "Courant number"),
         ("blunt_sphere", "Courant number with friction"),
-        ("moving_sphere", "Courant number"),
     ],
 )
 def test_scenes_predict_what_the_analysis_of_their_flow_says(scene: str, name: str) -> None:
