@@ -4,8 +4,8 @@
 
 The gas of a scene file, with the settings of its limit of stability NAME (the first if not named),
 is run by itself at the Courant number that holds. From half of the end of that limit a random
-disturbance of all nodes takes linearised steps of another Courant number along that run, boundaries,
-limiter and shocks included: power iteration, which yields the growth of the fastest disturbance.
+disturbance of all nodes takes linearised steps of another Courant number along that run, with its
+boundaries, limiter and shocks: power iteration, which yields the growth of the fastest disturbance.
 `flow_limit` takes each node for a lattice: waves that are swept out of the flow, or into a shock,
 before they have grown count there.
 """
