@@ -14,14 +14,14 @@ SCENES = Path(__file__).resolve().parents[2] / "scenarios"
 LIMITS = {
     "shock_tube": (0, 0.95, 1.3),
     "vortex": (0, 0.95, 1.2),
-    "wedge": (0, 0.75, 1.05),  # of first order while the shock builds up
+    "wedge": (0, 0.9, 1.1),
     "couette": (0, 0.95, 1.1),
     "flat_plate": (0, 0.9, 1.1),
-    "blunt_sphere": (0, 0.95, 1.4),  # waves are swept out
-    "blunt_sphere with friction": (1, 0.95, 1.4),
-    "moving_sphere": (0, 0.95, 1.35),
-    "moving_sphere between cuts": (1, 0.9, 1.2),
-    "shock_layer_particle": (0, 0.95, 1.75),  # sound is smeared by the first layer
+    "blunt_sphere": (0, 0.9, 1.1),
+    "blunt_sphere with friction": (1, 0.95, 1.1),
+    "moving_sphere": (0, 0.95, 1.15),
+    "moving_sphere between cuts": (1, 0.85, 1.15),
+    "shock_layer_particle": (0, 0.95, 1.15),
     "dusty_shock": (0, 0.9, 1.1),
 }
 
