@@ -1,0 +1,1 @@
+"""Stability of the scheme: the step linearised at a solid's state."""
