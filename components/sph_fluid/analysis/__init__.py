@@ -1,0 +1,1 @@
+"""Tools that examine the scheme from outside; the solver imports none of them."""
