@@ -8,9 +8,10 @@ a_n is constant in windows w feels mean forces -Σ H_k a_{n-k}, H the second dif
 Repeated windows (Causin, Gerbeau & Nobile, Comput. Methods Appl. Mech. Engrg. 194 (2005) 4506): a
 guess comes back times -H_0/m; a share ω of the residual converges up to ω = 2 / (1 + H_0/m).
 
-Staggered windows: m a_n = -Σ H_k a_{n-1-k}, stable if no root of z^n + Σ H_k/m z^{n-1-k} is outside
-of the circle of 1. Short windows of light cubes make g(t) lag, which is unstable however weak the
-growth; long ones come to H_0 = M, the added mass, and M < m.
+Staggered windows: m a_n = -Σ H_k a_{n-1-k}. The same of the window before is subtracted, so that
+g(t) ends as a constant and not at once: stable if no root of z^n - z^{n-1} + Σ (H_k - H_{k-1})/m
+z^{n-1-k} is outside of the circle of 1. In short windows g(t) lags, which is unstable for light
+cubes however short the window; long ones come to H_0 = M, the added mass, and M < m.
 """
 
 import tempfile
@@ -25,6 +26,7 @@ from quintet.interfaces.component import Array
 
 EDGE, SPEED = 0.15, 1e-3  # m, m/s
 WINDOW, END = 5e-4, 0.12  # s, of the runs
+ROUNDING = 1e-9  # of roots
 SETTINGS = (
     "expect=[]",
     f"end={END}",
@@ -67,7 +69,8 @@ def masses(times: Array, twice: Array, window: float) -> Array:
 
 def growth(masses: Array, mass: float) -> float:
     """Largest factor in a staggered window of a cube [kg]."""
-    return float(np.abs(np.roots(np.concatenate([[1.0], masses / mass]))).max())
+    changes = np.diff(masses, prepend=0.0) / mass
+    return float(np.abs(np.roots([1.0, changes[0] - 1.0, *changes[1:]])).max())
 
 
 def lightest(masses: Array) -> float:
@@ -75,7 +78,7 @@ def lightest(masses: Array) -> float:
     low, high = 10.0, 2000.0
     while high - low > 1.0:
         density = 0.5 * (low + high)
-        if growth(masses, density * EDGE**3) > 1.0:
+        if growth(masses, density * EDGE**3) > 1.0 + ROUNDING:
             low = density
         else:
             high = density

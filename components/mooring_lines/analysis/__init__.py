@@ -1,0 +1,1 @@
+"""Tools that examine lines from outside; the component imports none of them."""
