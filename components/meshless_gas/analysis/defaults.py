@@ -17,9 +17,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from quintet.components.meshless_gas.analysis.flow_limit import put
 from quintet.components.meshless_gas.component import MeshlessGas
 from quintet.components.meshless_gas.params import MeshlessGasParams
+from quintet.components.shared.scene_limits import put
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.params import read
 
@@ -43,7 +43,7 @@ def scene_of(path: Path, preset: str = "", settings: Mapping[str, Any] | None = 
     chosen: Table = scene["presets"][preset] if preset else {}
     for place, value in {**chosen, **(settings or {})}.items():
         if place != "study":
-            put(scene, place.split("."), value)
+            put(scene, place, value)
     return scene
 
 

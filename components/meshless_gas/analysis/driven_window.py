@@ -8,18 +8,15 @@ speed in the j-th window after such a step, exchanges once per window w have
 v[n+1] = v[n] - w/m Σ_j (v[n-j] - v[n-j-1]) F_j.
 """
 
-import copy
 import sys
-import tomllib
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
-from quintet.components.meshless_gas.analysis.flow_limit import put
 from quintet.components.meshless_gas.component import MeshlessGas
 from quintet.components.meshless_gas.driven_bodies import complete
 from quintet.components.meshless_gas.params import MeshlessGasParams
+from quintet.components.shared.scene_limits import keys_of, scene_at_limit
 from quintet.interfaces.component import Array
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.params import read
@@ -68,12 +65,9 @@ def longest_window(mass: float, times: Array, impulses: Array, crossing: float) 
 
 def driven_gas(path: Path) -> tuple[MeshlessGas, float]:
     """Make the gas of a scene's first limit, and its sphere's radius [m]."""
-    scene: dict[str, Any] = tomllib.loads(path.read_text())
-    for place, value in scene["stability"][0]["settings"].items():
-        put(scene, place.split("."), copy.deepcopy(value))
+    scene, _ = scene_at_limit(path)
     sphere = scene["components"]["particle"]["spheres"][0]
-    table = scene["components"]["gas"]
-    keys = {key: value for key, value in table.items() if key not in ("kind", "threads")}
+    keys = keys_of(scene, "meshless_gas")
     radius = float(sphere["radius"])
     stated = {"motion.position": np.zeros((1, 3)), "motion.radius": np.array([radius])}
     params, mistakes = read(MeshlessGasParams, complete(keys, stated), "gas")

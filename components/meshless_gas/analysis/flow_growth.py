@@ -110,7 +110,7 @@ def scale(gas: MeshlessGas) -> Array:
 
 def main(words: list[str]) -> None:
     """Print the limit, for each value of a second parameter."""
-    gas, limit = gas_of(Path(words[0]), *words[1:2])
+    gas, limit = gas_of(Path(words[0]), "".join(words[1:2]))
     for number, value in enumerate(limit.get("against", {}).get("values", [None])):
         gas, _ = gas_of(Path(words[0]), limit["name"], number)
         while gas.state.time < 0.5 * limit["end"] and np.isfinite(dt := gas.stable_dt()):

@@ -8,9 +8,7 @@ are then taken for a lattice, and its state, and share of slopes that shocks lea
 over.
 """
 
-import copy
 import sys
-import tomllib
 from pathlib import Path
 from typing import Any
 
@@ -22,6 +20,7 @@ from quintet.components.meshless_gas.component import MeshlessGas
 from quintet.components.meshless_gas.laws.fluxes import smoothness
 from quintet.components.meshless_gas.params import MeshlessGasParams
 from quintet.components.meshless_gas.viscous.terms import Viscous
+from quintet.components.shared.scene_limits import keys_of, scene_at_limit
 from quintet.interfaces.component import Array
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.params import read
@@ -93,39 +92,17 @@ def gas_of(path: Path, name: str = "", number: int = 0) -> tuple[MeshlessGas, di
 
     `number` counts the values of a second parameter.
     """
-    scene = tomllib.loads(path.read_text())
-    limits = [limit for limit in scene.get("stability", []) if name in ("", limit.get("name"))]
-    if not limits:
-        raise SceneError(f"{path}: a limit of stability must be there; found none. Add it.")
-    limit = copy.deepcopy(limits[0])
-    for place, value in limit.get("settings", {}).items():
-        put(scene, place.split("."), value)
-    if "against" in limit:
-        put(scene, limit["against"]["parameter"].split("."), limit["against"]["values"][number])
-    (table,) = (
-        component
-        for component in scene["components"].values()
-        if component["kind"] == "meshless_gas"
-    )
-    keys = {key: value for key, value in table.items() if key not in ("kind", "threads")}
+    scene, limit = scene_at_limit(path, name, number)
+    keys = keys_of(scene, "meshless_gas")
     params, mistakes = read(MeshlessGasParams, keys, "gas")
     if mistakes:
         raise SceneError(mistakes[0])
-    limit.setdefault("end", scene["end"])
     return MeshlessGas(params), limit
-
-
-def put(scene: dict[str, Any], path: list[str], value: Any) -> None:
-    """Set what a dotted path leads to; numbers count items of lists."""
-    at: Any = scene
-    for key in path[:-1]:
-        at = at[int(key)] if isinstance(at, list) else at[key]
-    at[path[-1]] = value
 
 
 def main(words: list[str]) -> None:
     """Print the limit."""
-    gas, limit = gas_of(Path(words[0]), *words[1:2])
+    gas, limit = gas_of(Path(words[0]), "".join(words[1:2]))
     while gas.state.time < limit["end"] and np.isfinite(dt := gas.stable_dt()):
         gas.step(dt)
     step, row = flow_limit(gas)

@@ -16,13 +16,13 @@ Walls, gravity and pressure at rest are left out.
 
 import copy
 import sys
-import tomllib
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
+from quintet.components.shared.scene_limits import keys_of, put, scene_at_limit
 from quintet.components.shared.smoothing.smoothing import gradient, smoothing
 from quintet.components.sph_fluid.build import OFFSETS
 from quintet.components.sph_fluid.features import courant_limit
@@ -38,7 +38,6 @@ GROWTH = 1e-4  # of a wave in a step; one that grows by less is drowned by what 
 APPROACHING = 0.5  # share of the pairs that artificial viscosity acts between
 ACCURACY = 1e-3  # of the limit
 SOFTENING = 0.01  # of h², added to r²
-SERVED = ("kind", "threads", "ranks")  # keys of a component that are not the solver's
 
 
 class Waves(NamedTuple):
@@ -161,32 +160,17 @@ def limit(params_at: Callable[[float], SphFluidParams], holds: float, breaks: fl
 
 def scene_limit(path: Path, name: str = "") -> float:
     """Limit of the parameter of a scene's limit of stability; the first if none is named."""
-    scene = tomllib.loads(path.read_text("utf-8"))
-    tables = [table for table in scene.get("stability", []) if name in ("", table.get("name"))]
-    if not tables:
-        raise SceneError(f"{path}: a limit of stability must be there; found none. Add it.")
-    table = tables[0]
-    component = table["parameter"].split(".")[1]
+    scene, table = scene_at_limit(path, name)
 
     def params_at(value: float) -> SphFluidParams:
         varied = copy.deepcopy(scene)
-        for key, setting in {**table.get("settings", {}), table["parameter"]: value}.items():
-            _put(varied, key.split("."), setting)
-        keys = {k: v for k, v in varied["components"][component].items() if k not in SERVED}
-        params, mistakes = read(SphFluidParams, keys, component, path.parent)
+        put(varied, table["parameter"], value)
+        params, mistakes = read(SphFluidParams, keys_of(varied, "sph_fluid"), "water", path.parent)
         if mistakes:
             raise SceneError(mistakes[0])
         return params
 
     return limit(params_at, table["from"], table["to"])
-
-
-def _put(table: dict[str, Any], path: list[str], value: Any) -> None:
-    """Set what a dotted path leads to; numbers count items of lists."""
-    at: Any = table
-    for key in path[:-1]:
-        at = at[int(key)] if isinstance(at, list) else at.setdefault(key, {})
-    at[path[-1]] = value
 
 
 if __name__ == "__main__":

@@ -7,10 +7,9 @@ Courant number that is stable; the limit is printed for the state at each TIME [
 """
 
 import sys
-import tomllib
 from pathlib import Path
-from typing import Any
 
+from quintet.components.shared.scene_limits import keys_of, scene_at_limit
 from quintet.components.sph_solid.analysis.linear_step import largest_courant
 from quintet.components.sph_solid.component import SphSolid
 from quintet.components.sph_solid.params import SphSolidParams
@@ -20,16 +19,8 @@ from quintet.interfaces.params import read
 
 def solid_of(path: Path, name: str) -> SphSolid:
     """Make the solid of a scene file as its limit of that name has it."""
-    scene = tomllib.loads(path.read_text("utf-8"))
-    limits = [limit for limit in scene.get("stability", []) if limit.get("name") == name]
-    if not limits:
-        raise SceneError(f"{path}: a limit of stability named {name!r} must be there. Add it.")
-    for place, value in limits[0].get("settings", {}).items():
-        _put(scene, place.split("."), value)
-    (table,) = (
-        component for component in scene["components"].values() if component["kind"] == "sph_solid"
-    )
-    keys = {key: value for key, value in table.items() if key not in ("kind", "threads")}
+    scene, _ = scene_at_limit(path, name)
+    keys = keys_of(scene, "sph_solid")
     params, mistakes = read(SphSolidParams, keys, "solid")
     if mistakes:
         raise SceneError(mistakes[0])
@@ -51,14 +42,6 @@ def main(words: list[str]) -> None:
     solid = solid_of(Path(words[0]), words[1])
     for time in map(float, words[2:]):
         print(f"{words[1]}, {time:g} s: {limit_at(solid, time):.3g}", flush=True)
-
-
-def _put(scene: dict[str, Any], path: list[str], value: Any) -> None:
-    """Set what a dotted path leads to; numbers count items of lists."""
-    place: Any = scene
-    for key in path[:-1]:
-        place = place[int(key)] if isinstance(place, list) else place[key]
-    place[path[-1]] = value
 
 
 if __name__ == "__main__":
