@@ -43,6 +43,8 @@ def scene_at_limit(path: Path, name: str = "", number: int = 0) -> tuple[Table, 
         put(scene, place, value)
     if against := limit.get("against"):
         put(scene, against["parameter"], against["values"][number])
+        for place, values in against.get("along", {}).items():
+            put(scene, place, values[number])
     limit.setdefault("end", scene["end"])
     return scene, limit
 

@@ -36,7 +36,8 @@ end, extrapolated from the last two: with one pass over pairs a step, sound wave
 not amplified (`integration/extrapolated.py`).
 
 With `integration` "symplectic" there are two passes a step, of second order; rest stays stable up
-to a `courant` of 1.5 instead of 0.55 (`analysis/lattice_limit.py`).
+to a `courant` of 1.3 to 1.6 instead of 0.57 to 0.60, by kernel, dimensions and viscosity
+(`analysis/lattice_limit.py`).
 
 What strikes the fluid faster than half the speed of sound, so that its density rises by a quarter,
 is an error: a weakly compressible fluid allows a tenth (Monaghan 1994).

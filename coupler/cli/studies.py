@@ -68,7 +68,7 @@ def add_commands(command: Command) -> None:
     add_scene(stability, nargs="?")
     add_report(stability, "runs/SCENE-stability")
     stability.add_argument("--all", action="store_true", help=STABILITY_ALL)
-    stability.add_argument("--jobs", type=int, default=2, metavar="N", help=SCENES_AT_ONCE)
+    stability.add_argument("--jobs", type=int, metavar="N", help=SCENES_AT_ONCE)
     stability.add_argument("--readme", type=Path, metavar="FILE", help=LIMITS_README)
     scan = command("scan", series, "check whether wrong results of absurd settings are reported")
     add_scene(scan, nargs="?")

@@ -6,6 +6,7 @@ Where only expectations fail a scene is degraded, not unstable; that limit is lo
 
 import argparse
 import json
+import sys
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import dataclass
@@ -34,6 +35,7 @@ from quintet.coupler.study.stability_search import Search, find_limit, summary
 from quintet.interfaces.errors import SceneError
 
 NAME = "stability.json"
+SCENES_AT_ONCE = 2
 KEYS = ("scene", "limits")  # of the file for programs
 Row = dict[str, Any]
 
@@ -74,8 +76,9 @@ def run_stability(options: argparse.Namespace) -> int:
     require_scene_or_all("stability", options)
     if options.all:
         return _run_all(options)
-    if options.readme:
-        raise SceneError("--readme is for --all. Add --all, or remove it.")
+    for option in ("readme", "jobs"):
+        if getattr(options, option) is not None:
+            raise SceneError(f"--{option} is for --all. Add --all, or remove it.")
     asked = (options.scene, options.preset, options.settings, options.swap, options.transport)
     scene, variants = load_variants(*asked)
     wanted = JsonFile(options.json, KEYS, kind=dict)
@@ -104,6 +107,8 @@ def _run_all(options: argparse.Namespace) -> int:
     Limits of one scene are found one after the other, several scenes at once.
     """
     refuse_with_all("stability", options)
+    if options.jobs is None:
+        options.jobs = SCENES_AT_ONCE
     if options.jobs < 1:
         raise SceneError(f"stability: --jobs must be 1 or more; found {options.jobs}. Correct it.")
     wanted = JsonFile(options.json, KEYS, kind=list)
@@ -123,9 +128,16 @@ def _run_all(options: argparse.Namespace) -> int:
             threads.submit(searches.find, name, variants.stability, folder / name): name
             for name, (_, variants) in scenes.items()
         }
+        failed = False
         try:
             for future in as_completed(futures):
-                name, summaries = futures[future], future.result()
+                name = futures[future]
+                try:
+                    summaries = future.result()
+                except SceneError as error:
+                    print(f"{name}: {error}", file=sys.stderr, flush=True)
+                    failed = True
+                    continue
                 if stop():
                     continue  # the last of them may be incomplete
                 row = (name, scenes[name][0], summaries, folder / name, _asked(options))
@@ -140,6 +152,8 @@ def _run_all(options: argparse.Namespace) -> int:
             threads.shutdown(cancel_futures=True)
     if stop():
         return results.INTERRUPTED
+    if failed:
+        return results.FAILED
     return _status([limit for scene in content.values() for limit in scene["limits"]])
 
 

@@ -82,16 +82,16 @@ def motions(pair: Array, normal: Array, point: Array, position: Array) -> tuple[
 
 
 def _materials(component: DemBodies, pair: Array, normal: Array) -> tuple[int, int]:
-    """Materials of two bodies, or of one and the plane with that normal: all are the ground."""
+    """Numbers of the two materials of a contact; of the ground, that of its plane."""
     names, planes = list(component.params.materials), component.params.planes
     first, second = (int(body) for body in pair)
     if second < component.count:
-        other = component.bodies[second].material
+        second_material = component.bodies[second].material
     else:
         normals = np.array([plane.normal for plane in planes])
         along = normals @ normal / np.linalg.norm(normals, axis=1)
-        other = planes[int(np.argmax(along))].material
-    return names.index(component.bodies[first].material), names.index(other)
+        second_material = planes[int(np.argmax(along))].material
+    return names.index(component.bodies[first].material), names.index(second_material)
 
 
 def _rolling(component: DemBodies, pair: Array, μ_r: float) -> tuple[float, float]:

@@ -32,7 +32,7 @@ LEAST = 0.5  # Courant number from which limits are sought
 def largest_courant(gas: MeshlessGas) -> float:
     """Return the largest Courant number at which no disturbance of the flow grows from now on.
 
-    One counts as growing if it gains more than `GROWTH` a step.
+    A disturbance counts as growing if it gains more than `GROWTH` a step.
     """
     low, high, saved = LEAST, TOP, gas.save()
     while high - low > ACCURACY * high:

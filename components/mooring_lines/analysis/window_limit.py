@@ -19,6 +19,7 @@ import numpy as np
 
 from quintet.components.mooring_lines.component import MooringLines
 from quintet.components.mooring_lines.params import MooringLinesParams
+from quintet.components.shared.scene_limits import keys_of
 from quintet.interfaces.component import Array
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.params import read
@@ -29,8 +30,7 @@ STEP = 1e-5  # m and rad, of differences
 def lines_of(path: Path, mass: float) -> MooringLines:
     """Lines of a scene file, made fast to its first ball, of a mass [kg]."""
     components: dict[str, Any] = tomllib.loads(path.read_text("utf-8"))["components"]
-    (table,) = (keys for keys in components.values() if keys["kind"] == "mooring_lines")
-    keys = {key: value for key, value in table.items() if key != "kind"}
+    keys = keys_of({"components": components}, "mooring_lines")
     params, mistakes = read(MooringLinesParams, keys, "lines")
     if params is None:
         raise SceneError(mistakes[0])

@@ -161,6 +161,11 @@ def limit(params_at: Callable[[float], SphFluidParams], holds: float, breaks: fl
 def scene_limit(path: Path, name: str = "") -> float:
     """Limit of the parameter of a scene's limit of stability; the first if none is named."""
     scene, table = scene_at_limit(path, name)
+    if not isinstance(table["parameter"], str):
+        raise SceneError(
+            f"{path}: the parameter of {table['name']} must be one key of the fluid; found "
+            f"{table['parameter']}. Name another limit."
+        )
 
     def params_at(value: float) -> SphFluidParams:
         varied = copy.deepcopy(scene)

@@ -9,6 +9,7 @@ from spring_scene import command, write
 from quintet.coupler.report.stability_tables import markdown
 from quintet.coupler.scene.read import load_variants
 from quintet.coupler.study import stability
+from quintet.interfaces.errors import SceneError
 
 LIMIT = """
 [[stability]]
@@ -48,6 +49,8 @@ def test_limits_of_all_scenes_make_a_table(tmp_path, monkeypatch, capsys):
     assert "soft: components.spring.step = 0.15: stable" in capsys.readouterr().out
     assert command("stability", "--all", "--jobs", 0) == 2
     assert "stability: --jobs must be 1 or more; found 0." in capsys.readouterr().err
+    assert command("stability", scenes["soft"], "--jobs", 2) == 2
+    assert "--jobs is for --all. Add --all, or remove it." in capsys.readouterr().err
     assert command("stability", "--all", "--set", "end=1.0") == 2
     assert "stability --all takes no --set" in capsys.readouterr().err
     assert command("stability") == 2 and "a scene or --all" in capsys.readouterr().err
@@ -61,3 +64,26 @@ def by_name(searches, find, scenes, at_once, name, *arguments):
     """Find limits of a scene of our own, that has no file in the library, two at once."""
     at_once.wait()
     return find(searches, str(scenes[name]), *arguments)
+
+
+def test_a_scene_that_cannot_be_searched_leaves_the_others(tmp_path, monkeypatch, capsys):
+    scenes = {}
+    for name in ("soft", "firm"):
+        (tmp_path / name).mkdir()
+        scenes[name] = write(tmp_path / name, LIMIT)
+    monkeypatch.setattr(stability, "library", lambda: scenes)
+    monkeypatch.setattr(stability, "load_variants", lambda name: load_variants(str(scenes[name])))
+    find = stability.Searches.find
+
+    def find_in_firm(searches, name, limits, folder):
+        if name == "soft":
+            raise SceneError("its file is gone. Copy it back.")
+        return find(searches, str(scenes[name]), limits, folder)
+
+    monkeypatch.setattr(stability.Searches, "find", find_in_firm)
+    assert (
+        command("stability", "--all", "--json", tmp_path / "all.json", "--out", tmp_path / "out")
+        == 3
+    )
+    assert "soft: its file is gone. Copy it back." in capsys.readouterr().err
+    assert [entry["scene"] for entry in json.loads((tmp_path / "all.json").read_text())] == ["firm"]
