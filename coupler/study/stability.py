@@ -131,16 +131,14 @@ def _run_all(options: argparse.Namespace) -> int:
         failed = False
         try:
             for future in as_completed(futures):
-                name = futures[future]
-                try:
-                    summaries = future.result()
-                except SceneError as error:
+                name, error = futures[future], future.exception()
+                is_refused = isinstance(error, SceneError)
+                if is_refused:
                     print(f"{name}: {error}", file=sys.stderr, flush=True)
                     failed = True
-                    continue
-                if stop():
+                if is_refused or stop():
                     continue  # the last of them may be incomplete
-                row = (name, scenes[name][0], summaries, folder / name, _asked(options))
+                row = (name, scenes[name][0], future.result(), folder / name, _asked(options))
                 content[name] = _write(*row, command_line("stability", name))
                 ordered = [content[scene] for scene in sorted(content)]
                 wanted.write(ordered)

@@ -4,8 +4,9 @@
 
 WINDOW [s] is the time between two exchanges. Points are ten layers with the heat capacity of 3 k
 per point, joined by conductances that give the measured resistance; 0.85 of a layer are contacts
-between the layers at the ends and their baths (`conductivity`). The elements answer the mean heat
-flow Q of a window by the temperature T = 570 K - R Q, of which the share RELAXATION is handed on:
+between the layers at the ends and their baths (`conductivity`). With the mean
+heat flow Q of a window the elements have the temperature T = 570 K - R Q at the interface; a share
+RELAXATION of its change reaches the points:
 T[n+1] = T[n] + r (570 K - R Q[n] - T[n]). Where T alternates, every window also fills or empties
 the layers, so that Q answers T by more than a steady flow does.
 """
@@ -27,7 +28,7 @@ LENGTH, AREA = 0.0225, 1e-4  # m, m2, of the elements
 def window_matrix(window: float) -> Array:
     """Temperatures of the layers, heat given by the hot bath [J], and its temperature, a window on.
 
-    Deviations from what is steady; the temperature of the hot bath does not change in a window.
+    All are deviations from the steady state; that of the hot bath is constant in a window.
     """
     conductance = (LAYERS - 1 + CONTACTS) / RESISTANCE  # W/K, between two layers
     contact = conductance / (0.5 * CONTACTS)

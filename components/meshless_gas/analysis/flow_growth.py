@@ -83,7 +83,7 @@ def linear_step(gas: MeshlessGas, flow: Fields, disturbance: Array, dt: float) -
 
 
 def disturbed(flow: Fields, change: Array, gamma: float) -> Fields:
-    """Saved state of a flow with a change (n, 5) of what is conserved."""
+    """Saved state of a flow whose conserved quantities differ by a change (n, 5)."""
     conservative, primitive = flow["conservative"] + change, np.array(flow["primitive"])
     rows = np.flatnonzero(change.any(axis=1))
     mass, momentum, energy = np.split(conservative[rows], (1, 4), axis=1)
