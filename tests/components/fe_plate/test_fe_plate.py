@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 import pytest
-from scipy.sparse.linalg import LinearOperator, eigsh
 
+from quintet.components.fe_plate.analysis.longest_step import greatest_frequency
 from quintet.components.fe_plate.component import FePlate
 from quintet.components.fe_plate.kernels.eight_points import write_point_volumes
 from quintet.components.fe_plate.kernels.geometry import write_volumes
@@ -156,28 +156,6 @@ def test_energy_is_kept_at_second_order(integration):
         end = structure.totals()
         drifts.append(abs(end.kinetic + end.internal - start) / start)
     assert drifts[0] < 0.02 and drifts[0] / drifts[1] > 3.0
-
-
-def greatest_frequency(structure):
-    """ω [rad/s] of this very mesh, from its own forces on small displacements."""
-    still = structure.state.position.copy()
-    free, root = structure.model.free.ravel(), np.repeat(np.sqrt(structure.model.inverse_mass), 3)
-    state = structure.save()
-    dt = 1e-9
-
-    def stiffness(u):
-        structure.load(state)
-        structure.state.velocity[:] = (root * u.ravel() * free).reshape(-1, 3) / dt * 1e-6
-        structure.state.internal[:] = 0.0
-        structure.step(dt)
-        force = -structure.state.internal.ravel() * 1e6
-        return free * root * force
-
-    size = still.size
-    operator = LinearOperator((size, size), matvec=stiffness, dtype=float)
-    eigenvalues = eigsh(operator, 1, which="LA", return_eigenvectors=False, tol=1e-6)
-    structure.load(state)
-    return math.sqrt(eigenvalues[0])
 
 
 @INTEGRATIONS

@@ -1,0 +1,1 @@
+"""Stability of the scheme: the fastest mode of a structure as it stands."""

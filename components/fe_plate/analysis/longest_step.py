@@ -1,0 +1,85 @@
+"""Longest stable step of a structure at rest: 2/ω of its fastest mode, by its own forces.
+
+    python -m quintet.components.fe_plate.analysis.longest_step SCENE.toml [NAME [NUMBER]]
+
+prints 2/ω [s] of the structure of a scene file, and how many times that is the proven bound, of
+which `courant` is a share. The structure is as the scene's limit of stability NAME (by default the
+first) has it, with value NUMBER (from 0) of its second parameter. Nothing damps, pushes or fails,
+and no partner is there.
+
+The forces of a step of small displacements u are -K u; Lanczos's method finds the largest
+eigenvalue ω² of M^-½ K M^-½ from such steps alone.
+"""
+
+import math
+import sys
+from pathlib import Path
+
+import numpy as np
+from scipy.sparse.linalg import LinearOperator, eigsh
+
+from quintet.components.fe_plate.component import FePlate
+from quintet.components.fe_plate.params import FePlateParams
+from quintet.components.shared.scene_limits import keys_of, scene_at_limit
+from quintet.interfaces.component import Array
+from quintet.interfaces.errors import SceneError
+from quintet.interfaces.params import read
+
+FREE = {  # keys of a structure that only swings
+    "gravity": [0.0, 0.0, 0.0], "pressures": [], "rigid_walls": [], "erosion": [],
+    "viscosity_linear": 0.0, "viscosity_quadratic": 0.0, "mass_damping": 0.0,
+    "stiffness_damping": 0.0,
+}  # fmt: skip
+SMALL = 1e-6  # of the shortest edge: the largest displacement
+SHARE = 1e-3  # of the stable step: that of a displacement
+TOLERANCE = 1e-6  # of ω²
+
+
+def structure_of(path: Path, name: str = "", number: int = 0) -> FePlate:
+    """Make the structure of a scene file as its limit of that name has it, free and undamped."""
+    scene, _ = scene_at_limit(path, name, number)
+    keys = keys_of(scene, "fe_plate") | FREE
+    params, mistakes = read(FePlateParams, keys, "structure", path.parent)
+    if mistakes:
+        raise SceneError(mistakes[0])
+    return FePlate(params)
+
+
+def greatest_frequency(structure: FePlate) -> float:
+    """ω [rad/s] of the fastest mode of a structure on one rank; it keeps its state.
+
+    Parameters
+    ----------
+    structure : FePlate
+        At rest, without loads and damping.
+    """
+    before, free = structure.save(), structure.model.free.astype(np.float64)
+    root = np.sqrt(structure.model.inverse_mass)[:, None] * free  # 1/√kg
+    still = structure.state.internal.copy()
+    dt = SHARE * structure.bound
+
+    def product(vector: Array) -> Array:
+        motion = root * vector.reshape(root.shape)
+        scale = SMALL * structure.built.shortest / np.abs(motion).max()
+        structure.load(before)
+        structure.state.velocity[:] = scale / dt * motion
+        structure.step(dt)
+        return (root * (still - structure.state.internal) / scale).ravel()
+
+    operator = LinearOperator((root.size, root.size), matvec=product, dtype=np.float64)
+    start = np.random.default_rng(0).normal(size=root.size) * free.ravel()
+    squares = eigsh(operator, 1, which="LA", v0=start, return_eigenvectors=False, tol=TOLERANCE)
+    structure.load(before)
+    return math.sqrt(squares[0])
+
+
+def main(words: list[str]) -> None:
+    """Print the longest step of a scene's structure."""
+    path, name, number = [*words, *("", "0")[len(words) - 1 :]]
+    structure = structure_of(Path(path), name, int(number))
+    step = 2.0 / greatest_frequency(structure)
+    print(f"{step:.4g} s, {step / structure.bound:.4g} times the proven bound")
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])
