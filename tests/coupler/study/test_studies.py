@@ -129,6 +129,17 @@ def test_the_time_is_kept_and_the_same_command_goes_on(scenes, tmp_path, capsys,
     assert STUDIES.read(readme) == table
 
 
+def test_a_run_that_was_measured_beside_others_is_no_longer_than_its_processor_time(tmp_path):
+    rows = [
+        {"settings": {"window": wall}, "status": status, "wall": wall, "cpu": 30.0}
+        for status, wall in (("done", 90.0), ("done", 20.0), ("not run", 0.0))
+    ]
+    path = tmp_path / "studies.json"
+    path.write_text(json.dumps([{"scene": "soft", "rows": rows}, {"scene": "stiff", "rows": []}]))
+    assert list(studies_plan.measured_times(path, "soft").values()) == [34.0, 20.0]
+    assert studies_plan.measured_times(path, "stiff") == {}
+
+
 def step_of(scene):
     return scene.resolved["components"]["spring"]["step"]
 
