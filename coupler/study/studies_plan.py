@@ -77,7 +77,7 @@ def estimated(base: Scene, scene: Scene) -> float:
 def measured_times(path: Path, scene: str) -> dict[str, float]:
     """Run times [s] of a scene's refinements that were measured before, by their settings.
 
-    Beside other work a run takes longer; it counts with its processor time, and a start, at most.
+    At most a start and the processor time of the components: beside other work runs take longer.
     """
     rows = (row for study in read_studies(path) if study["scene"] == scene for row in study["rows"])
     return {

@@ -2,10 +2,10 @@
 
     python -m quintet.components.fe_plate.analysis.longest_step SCENE.toml [NAME [NUMBER]]
 
-prints 2/ω [s] of the structure of a scene file, and how many times that is the proven bound, of
-which `courant` is a share. The structure is as the scene's limit of stability NAME (by default the
-first) has it, with value NUMBER (from 0) of its second parameter. Nothing damps, pushes or fails,
-and no partner is there.
+prints 2/ω [s] of the structure in a scene file, and its ratio to the proven bound, which is the
+largest stable `courant`. The structure has the settings of the scene's limit of stability NAME (the
+first if none is named), with value NUMBER (from 0) of its second parameter. Damping, loads, walls
+and erosion are off, and there is no partner.
 
 The forces of a step of small displacements u are -K u; Lanczos's method finds the largest
 eigenvalue ω² of M^-½ K M^-½ from such steps alone.
@@ -25,20 +25,20 @@ from quintet.interfaces.component import Array
 from quintet.interfaces.errors import SceneError
 from quintet.interfaces.params import read
 
-FREE = {  # keys of a structure that only swings
+UNDAMPED_AND_UNLOADED = {
     "gravity": [0.0, 0.0, 0.0], "pressures": [], "rigid_walls": [], "erosion": [],
     "viscosity_linear": 0.0, "viscosity_quadratic": 0.0, "mass_damping": 0.0,
     "stiffness_damping": 0.0,
 }  # fmt: skip
-SMALL = 1e-6  # of the shortest edge: the largest displacement
-SHARE = 1e-3  # of the stable step: that of a displacement
+DISPLACEMENT = 1e-6  # of the shortest edge, at most
+STEP = 1e-3  # of the proven bound: the step that makes the displacement
 TOLERANCE = 1e-6  # of ω²
 
 
 def structure_of(path: Path, name: str = "", number: int = 0) -> FePlate:
-    """Make the structure of a scene file as its limit of that name has it, free and undamped."""
+    """Make the structure with the settings of a limit, without damping and loads."""
     scene, _ = scene_at_limit(path, name, number)
-    keys = keys_of(scene, "fe_plate") | FREE
+    keys = keys_of(scene, "fe_plate") | UNDAMPED_AND_UNLOADED
     params, mistakes = read(FePlateParams, keys, "structure", path.parent)
     if mistakes:
         raise SceneError(mistakes[0])
@@ -46,7 +46,7 @@ def structure_of(path: Path, name: str = "", number: int = 0) -> FePlate:
 
 
 def greatest_frequency(structure: FePlate) -> float:
-    """ω [rad/s] of the fastest mode of a structure on one rank; it keeps its state.
+    """ω [rad/s] of the fastest mode of a structure on one rank; its state is restored.
 
     Parameters
     ----------
@@ -56,11 +56,11 @@ def greatest_frequency(structure: FePlate) -> float:
     before, free = structure.save(), structure.model.free.astype(np.float64)
     root = np.sqrt(structure.model.inverse_mass)[:, None] * free  # 1/√kg
     still = structure.state.internal.copy()
-    dt = SHARE * structure.bound
+    dt = STEP * structure.bound
 
     def product(vector: Array) -> Array:
         motion = root * vector.reshape(root.shape)
-        scale = SMALL * structure.built.shortest / np.abs(motion).max()
+        scale = DISPLACEMENT * structure.built.shortest / np.abs(motion).max()
         structure.load(before)
         structure.state.velocity[:] = scale / dt * motion
         structure.step(dt)
@@ -73,13 +73,12 @@ def greatest_frequency(structure: FePlate) -> float:
     return math.sqrt(squares[0])
 
 
-def main(words: list[str]) -> None:
+def main(path: str, name: str = "", number: str = "0") -> None:
     """Print the longest step of a scene's structure."""
-    path, name, number = [*words, *("", "0")[len(words) - 1 :]]
     structure = structure_of(Path(path), name, int(number))
     step = 2.0 / greatest_frequency(structure)
     print(f"{step:.4g} s, {step / structure.bound:.4g} times the proven bound")
 
 
 if __name__ == "__main__":
-    main(sys.argv[1:])
+    main(*sys.argv[1:])

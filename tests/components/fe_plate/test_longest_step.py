@@ -61,7 +61,7 @@ def test_predictions_of_scenes_are_those_of_their_meshes(
 
 
 def test_a_rim_is_as_stiff_as_a_window_with_its_viscosity_allows() -> None:
-    """The damping ratio ξ = C₁ l ω/4c does not depend on the stiffness, and ω² grows with it."""
+    """ξ = C₁ l ω/4c does not depend on the stiffness, and ω² is proportional to it."""
     structure = structure_of(SCENES / "al_ball_7400_glued" / "scene.toml", "stiffness of the rim")
     ω = greatest_frequency(structure)
     table = tomllib.loads((SCENES / "al_ball_7400_glued" / "scene.toml").read_text("utf-8"))

@@ -129,7 +129,7 @@ def test_the_time_is_kept_and_the_same_command_goes_on(scenes, tmp_path, capsys,
     assert STUDIES.read(readme) == table
 
 
-def test_a_run_that_was_measured_beside_others_is_no_longer_than_its_processor_time(tmp_path):
+def test_a_run_measured_beside_others_counts_at_most_its_processor_time_and_a_start(tmp_path):
     rows = [
         {"settings": {"window": wall}, "status": status, "wall": wall, "cpu": 30.0}
         for status, wall in (("done", 90.0), ("done", 20.0), ("not run", 0.0))
