@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
+from quintet.components.particle_dynamics.analysis.lattice_energy import LatticeEnergy
 from quintet.components.particle_dynamics.build import build
 from quintet.components.particle_dynamics.params import ParticleLatticeParams
 from quintet.components.shared.scene_limits import keys_of, scene_at_limit
 from quintet.interfaces.params import read
 from quintet.scenarios.dust_in_stream.relaxation import GAS_CONSTANT, viscosity
-from quintet.scenarios.hot_bar_baths.escapes import Lattice
 
 SCENES = Path(__file__).resolve().parents[2] / "scenarios"
 
@@ -82,7 +82,7 @@ def test_a_step_of_a_heated_slab_without_overshoot():
 def test_energy_of_a_lattice_by_the_modified_energy_of_all_its_modes():
     table, limits = limits_of("lattice_in_motion")
     params, _ = read(ParticleLatticeParams, keys_of(table, "particle_lattice"), "cube")
-    lattice = Lattice(params)
+    lattice = LatticeEnergy(params)
     squares = np.linalg.eigvalsh(lattice.stiffness(lattice.start) / lattice.mass).clip(0.0)
     assert squares[-1] == pytest.approx(build(params).frequency ** 2, rel=1e-6)
 

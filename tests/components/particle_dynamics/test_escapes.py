@@ -2,34 +2,37 @@
 
 import copy
 import tomllib
+from pathlib import Path
 
 import numpy as np
 import pytest
 
-from quintet.components.particle_dynamics.laws import energy, force
-from quintet.components.particle_dynamics.potential import stiffness
-from quintet.coupler.scene.read import library
-from quintet.scenarios.hot_bar_baths.escapes import (
+from quintet.components.particle_dynamics.analysis.escapes import (
     DISPLACEMENTS,
-    TIMES,
+    Saddle,
     climb,
     descend,
     find_saddles,
-    lattice_of_scene,
+    lattice_of,
     loses_a_bond,
     median_temperature,
     relative_temperatures,
     saddle_at,
 )
+from quintet.components.particle_dynamics.analysis.lattice_energy import LatticeEnergy
+from quintet.components.particle_dynamics.laws import energy, force
+from quintet.components.particle_dynamics.potential import stiffness
+
+SCENE = Path(__file__).resolve().parents[3] / "scenarios" / "hot_bar_baths" / "scene.toml"
 
 
 @pytest.fixture(scope="module")
-def lattice():
-    return lattice_of_scene()[0]
+def lattice() -> LatticeEnergy:
+    return LatticeEnergy(lattice_of(SCENE)[0])
 
 
 @pytest.fixture(scope="module")
-def saddle(lattice):
+def saddle(lattice: LatticeEnergy) -> Saddle:
     """That of a corner of the hot end which is displaced sideways."""
     mode = np.zeros_like(lattice.start)
     mode[0, 1] = -1.0
@@ -37,7 +40,7 @@ def saddle(lattice):
     return saddle_at(lattice, climb(lattice, displaced, mode.ravel()))
 
 
-def test_energy_and_its_derivatives_are_those_of_the_solver(lattice):
+def test_energy_and_its_derivatives_are_those_of_the_solver(lattice: LatticeEnergy) -> None:
     random = np.random.default_rng(0)
     position = lattice.start + 0.05 * lattice.spacing * random.normal(size=lattice.start.shape)
     arm = position[lattice.i] - position[lattice.j]
@@ -60,7 +63,7 @@ def test_energy_and_its_derivatives_are_those_of_the_solver(lattice):
     assert stiffness(lattice.law, lattice.spacing) > 0.0
 
 
-def test_over_a_saddle_the_lattice_loses_a_bond(lattice, saddle):
+def test_over_a_saddle_the_lattice_loses_a_bond(lattice: LatticeEnergy, saddle: Saddle) -> None:
     values, modes = np.linalg.eigh(lattice.stiffness(saddle.position))
     assert values[0] < 0.0 < values[1] and loses_a_bond(lattice, saddle.position)
     move = 0.003 * lattice.spacing * modes[:, 0].reshape(saddle.position.shape)
@@ -70,7 +73,9 @@ def test_over_a_saddle_the_lattice_loses_a_bond(lattice, saddle):
     assert not loses_a_bond(lattice, lattice.start)
 
 
-def test_the_prefactor_without_friction_is_that_of_vineyard(lattice, saddle):
+def test_the_prefactor_without_friction_is_that_of_vineyard(
+    lattice: LatticeEnergy, saddle: Saddle
+) -> None:
     """Product of the minimum's frequencies over those of the saddle, J. Phys. Chem. Solids 1957."""
     free = copy.copy(lattice)
     free.friction = np.zeros_like(lattice.friction)
@@ -82,7 +87,9 @@ def test_the_prefactor_without_friction_is_that_of_vineyard(lattice, saddle):
     assert saddle.prefactor < exact
 
 
-def test_temperatures_follow_the_number_of_ways_out_and_the_warmth_of_the_points(lattice, saddle):
+def test_temperatures_follow_the_number_of_ways_out_and_the_warmth_of_the_points(
+    lattice: LatticeEnergy, saddle: Saddle
+) -> None:
     even = np.ones(len(lattice.start))
     hot = median_temperature(lattice, [saddle], even, 40.0)
     assert median_temperature(lattice, [saddle, saddle], even, 20.0) == pytest.approx(hot, rel=1e-9)
@@ -91,8 +98,9 @@ def test_temperatures_follow_the_number_of_ways_out_and_the_warmth_of_the_points
 
 
 @pytest.mark.full
-def test_the_scene_predicts_what_all_escapes_say(lattice):
-    relative, saddles = relative_temperatures(lattice_of_scene()[1]), find_saddles(lattice)
-    (limit,) = tomllib.loads(library()["hot_bar_baths"].read_text("utf-8"))["stability"]
-    temperatures = [median_temperature(lattice, saddles, relative, time) for time in TIMES]
+def test_the_scene_predicts_what_all_escapes_say(lattice: LatticeEnergy) -> None:
+    params, times, end = lattice_of(SCENE)
+    relative, saddles = relative_temperatures(params, end), find_saddles(lattice)
+    (limit,) = tomllib.loads(SCENE.read_text("utf-8"))["stability"]
+    temperatures = [median_temperature(lattice, saddles, relative, time) for time in times]
     assert temperatures == pytest.approx(limit["predicted"], rel=0.01)
