@@ -16,7 +16,7 @@ import numpy as np
 from quintet.coupler.measures.ensemble_statistics import student
 from quintet.interfaces.component import Array
 
-FREEDOM = 3  # fewest degrees of freedom of the remainder
+FREEDOM = 3  # fewest degrees of freedom of the remainder; not fewer than there are inputs
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,7 +85,7 @@ def origins(
         None where there are too few runs, or all have the same value or input.
     """
     count, freedom = len(values), len(values) - len(inputs) - 1
-    if freedom < FREEDOM or not inputs:
+    if freedom < max(FREEDOM, len(inputs)) or not inputs:
         return None
     quantity, numbers = np.array(values, float), np.array(list(inputs.values()), float).T
     varied = numbers - numbers.mean(axis=0)

@@ -60,3 +60,11 @@ def test_few_runs_explain_nothing(runs):
     inputs, quantity = sample(np.random.default_rng(4), runs)
     assert origins(inputs, quantity, None) is None
     assert origins({"friction": np.ones(32)}, np.arange(32.0), None) is None
+
+
+@pytest.mark.parametrize(("runs", "is_explained"), [(16, False), (17, True)])
+def test_eight_inputs_need_twice_as_many_runs(runs, is_explained):
+    """With fewer, shares of one input above the whole variance come from chance."""
+    random = np.random.default_rng(5)
+    inputs = {f"input {k}": random.normal(size=runs) for k in range(8)}
+    assert (origins(inputs, random.normal(size=runs), None) is not None) == is_explained
