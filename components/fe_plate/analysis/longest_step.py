@@ -2,10 +2,10 @@
 
     python -m quintet.components.fe_plate.analysis.longest_step SCENE.toml [NAME [NUMBER]]
 
-prints 2/ω [s] of the structure in a scene file, and its ratio to the proven bound, which is the
-largest stable `courant`. The structure has the settings of the scene's limit of stability NAME (the
-first if none is named), with value NUMBER (from 0) of its second parameter. Damping, loads, walls
-and erosion are off, and there is no partner.
+prints 2/ω [s] of the structure in a scene file, and its ratio to the proven bound. This ratio is
+the largest stable `courant`. The structure has the settings of the scene's limit of stability NAME
+(the first if none is named), with value NUMBER (from 0) of its second parameter. Damping, loads,
+walls and erosion are off, and there is no partner.
 
 The forces of a step of small displacements u are -K u; Lanczos's method finds the largest
 eigenvalue ω² of M^-½ K M^-½ from such steps alone.

@@ -2,7 +2,7 @@
 
     python -m quintet.components.particle_dynamics.analysis.escapes SCENE.toml [NAME]
 
-prints the saddles that count most, and the temperatures for the times `end` of a scene's limit of
+prints the saddles that count most, and the temperature for each time `end` of a scene's limit of
 stability NAME (the first if none is named). Its first bath is the hot one, at the low end of x.
 
 The lattice leaves its minimum of energy over saddles. Each is found by eigenvector following: a
@@ -178,7 +178,9 @@ def lattice_of(path: Path, name: str = "") -> tuple[ParticleLatticeParams, list[
     if params is None:
         raise SceneError(mistakes[0])
     end = tomllib.loads(path.read_text("utf-8"))["end"]
-    return params, limit["against"]["values"], end
+    against = limit.get("against", {})
+    times = against["values"] if against.get("parameter") == "end" else [limit["end"]]
+    return params, times, end
 
 
 def main(path: str, name: str = "") -> None:

@@ -9,6 +9,7 @@ from quintet.components.particle_dynamics.kernels.forces import count_intact
 from quintet.components.particle_dynamics.params import ParticleLatticeParams
 from quintet.components.shared.search.nearest import nearest_rows
 from quintet.interfaces.component import Array
+from quintet.interfaces.errors import SceneError
 
 
 class LatticeEnergy:
@@ -18,11 +19,20 @@ class LatticeEnergy:
     ----------
     params : ParticleLatticeParams
         Without periodic sides.
+
+    Raises
+    ------
+    SceneError
+        The force of pairs comes from a table.
     """
 
     def __init__(self, params: ParticleLatticeParams) -> None:
         built = build(params)
-        assert isinstance(built.law, SevenRoots)
+        if not isinstance(built.law, SevenRoots):
+            raise SceneError(
+                "lattice: the force of pairs must be seven_roots; found force_table. Use another "
+                "scene."
+            )
         self.law, self.start, self.bonds = built.law, built.start, built.bonds
         self.mass, self.spacing = params.lattice.mass, params.lattice.spacing
         self.boltzmann = params.boltzmann
